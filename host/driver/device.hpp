@@ -1,0 +1,78 @@
+// A device as the renderer sees it: load an image, trace segments, read counters.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "hal/error.hpp"
+#include "host/grid/segment.hpp"
+#include "host/image/image.hpp"
+
+namespace gridrt {
+
+/// The answer to one ray. A miss: id -1, t infinite, u = v = 0. An any-hit answer: id 0 or -1,
+/// t = u = v = NaN.
+struct Hit {
+  std::int32_t id = -1;  ///< global triangle id
+  double t = std::numeric_limits<double>::infinity();
+  double u = 0.0;
+  double v = 0.0;
+};
+
+/// Which question a batch asks.
+enum class Query { kClosestHit, kAnyHit };
+
+/// How to open a device and talk to it.
+struct DeviceOptions {
+  std::string name = "auto";     ///< auto, seq, omp; usb[:SERIAL], sim, mpi when built in
+  std::string schedule = "rays"; ///< of software PEs
+  int threads = 0;               ///< of omp; 0: all cores
+  std::size_t rays_per_frame = 8192;  ///< batch size on the link, >= 1
+  int frames_in_flight = 4;           ///< >= 1
+  int timeout_ms = 10000;             ///< longest wait for one answer
+};
+
+/// What a device has done since it was opened.
+struct DeviceCounters {
+  std::uint64_t rays = 0;         ///< traced (segments that are misses by definition are not sent)
+  std::uint64_t steps = 0;        ///< traversal steps
+  std::uint64_t tests = 0;        ///< exact triangle tests
+  std::uint64_t masked = 0;       ///< references skipped by the half-voxel mask
+  std::uint64_t interrupts = 0;   ///< later voxels cancelled by a hit
+  std::uint64_t feedback_waits = 0;
+  std::uint64_t cycles = 0;       ///< of a clocked device, else 0
+  std::uint64_t bytes_out = 0;
+  std::uint64_t bytes_in = 0;
+  std::uint64_t frames_retried = 0;
+};
+
+/// An open device. Results depend on the scene alone, never on the device or its options.
+class Device {
+ public:
+  virtual ~Device() = default;
+
+  /// Loads an image; replaces the one before.
+  virtual Result<void> load(const Image& image) = 0;
+
+  /// Answers segments in their order. `hits.size()` equals `segments.size()`. Needs a loaded image.
+  virtual Result<void> trace(std::span<const Segment> segments, Query query,
+                             std::span<Hit> hits) = 0;
+
+  virtual Result<DeviceCounters> counters() = 0;
+
+  /// The name that was opened, with `auto` resolved.
+  [[nodiscard]] virtual std::string name() const = 0;
+};
+
+/// Opens a device by name. Errors: kUsage for an unknown name, kUnsupported for one that this
+/// build does not have (the advice lists those it has).
+Result<std::unique_ptr<Device>> open_device(const DeviceOptions& options);
+
+/// Names that open_device accepts in this build, `auto` left out; contract tests run on each.
+std::vector<std::string> built_in_devices();
+
+}  // namespace gridrt
