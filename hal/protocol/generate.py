@@ -1,0 +1,41 @@
+"""Turns protocol.toml into C++, SystemVerilog and documentation.
+
+usage: generate.py protocol.toml OUTPUT_DIRECTORY
+
+Writes gridrt_protocol.hpp, gridrt_protocol_pkg.sv and protocol.md. The output depends on the
+source alone. A mistake in the source ends the run with status 1 and nothing written.
+"""
+
+import sys
+from pathlib import Path
+
+from cpp import cpp_header
+from document import document
+from model import SourceError
+from source import read_protocol
+from systemverilog import sv_package
+
+
+def main(arguments: list[str]) -> int:
+    if len(arguments) != 2:
+        print(__doc__, file=sys.stderr)
+        return 2
+    try:
+        protocol = read_protocol(Path(arguments[0]))
+    except SourceError as error:
+        print(f"generate.py: {error}", file=sys.stderr)
+        return 1
+    files = {
+        "gridrt_protocol.hpp": cpp_header(protocol),
+        "gridrt_protocol_pkg.sv": sv_package(protocol),
+        "protocol.md": document(protocol),
+    }
+    folder = Path(arguments[1])
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, content in files.items():
+        (folder / name).write_text(content, encoding="utf-8", newline="\n")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
