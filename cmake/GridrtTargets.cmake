@@ -25,7 +25,7 @@ function(gridrt_library name)
     $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/generated>
     $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/gridrt>)
   target_compile_features(${name} PUBLIC cxx_std_23)
-  target_link_libraries(${name} PUBLIC ${ARG_LINK} PRIVATE $<BUILD_INTERFACE:gridrt_flags> ${ARG_PRIVATE})
+  target_link_libraries(${name} PUBLIC glm::glm ${ARG_LINK} PRIVATE $<BUILD_INTERFACE:gridrt_flags> ${ARG_PRIVATE})
   set_property(GLOBAL APPEND PROPERTY GRIDRT_LIBRARIES ${name})
 endfunction()
 

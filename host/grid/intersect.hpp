@@ -15,7 +15,8 @@ __extension__ using Int128 = __int128;
 
 /// The exact integers of a hit, in Moeller and Trumbore's arrangement ("Fast, Minimum Storage
 /// Ray/Triangle Intersection", 1997): D = p1 - p0, E1 = v1 - v0, E2 = v2 - v0, T = p0 - v0,
-/// det = E1.(D x E2), u = T.(D x E2), v = D.(T x E1), tn = E2.(T x E1). All have det's sign or are 0.
+/// det = E1.(D x E2), u = T.(D x E2), v = D.(T x E1), tn = E2.(T x E1). All have det's sign or are
+/// 0.
 struct ExactHit {
   Int128 det = 0;
   Int128 u = 0;

@@ -4,26 +4,27 @@
 
 #include <array>
 #include <cstdint>
-#include <glm/vec3.hpp>
 #include <span>
 #include <vector>
+
+#include <glm/vec3.hpp>
 
 #include "hal/error.hpp"
 
 namespace gridrt {
 
-inline constexpr int kMinBits = 4;         ///< fewest lattice bits an axis
-inline constexpr int kMaxBits = 24;        ///< most lattice bits an axis (wide records)
-inline constexpr int kMaxCompactBits = 17; ///< most lattice bits in compact records
+inline constexpr int kMinBits = 4;          ///< fewest lattice bits an axis
+inline constexpr int kMaxBits = 24;         ///< most lattice bits an axis (wide records)
+inline constexpr int kMaxCompactBits = 17;  ///< most lattice bits in compact records
 inline constexpr int kDefaultBits = 17;
 
 /// Scale and origin per axis: q = 2 + floor((v - lo) 2^scale + 1/2), in [2, max_q].
 struct Lattice {
   int bits = kDefaultBits;
-  glm::vec3 lo{0.0F};      ///< lower bound of the vertices that triangles use
-  glm::vec3 hi{0.0F};      ///< upper bound
-  glm::ivec3 scale{0};     ///< s: powers of two, largest with (hi - lo) 2^s <= 2^bits - 5
-  glm::ivec3 max_q{2};     ///< largest snapped coordinate of any vertex in use
+  glm::vec3 lo{0.0F};   ///< lower bound of the vertices that triangles use
+  glm::vec3 hi{0.0F};   ///< upper bound
+  glm::ivec3 scale{0};  ///< s: powers of two, largest with (hi - lo) 2^s <= 2^bits - 5
+  glm::ivec3 max_q{2};  ///< largest snapped coordinate of any vertex in use
 
   /// The far corner of the closed lattice box [0, 2 + max q].
   [[nodiscard]] glm::ivec3 box() const { return max_q + 2; }

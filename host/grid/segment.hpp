@@ -1,9 +1,10 @@
 // From a ray in scene units to a segment on the lattice: the last place where anything is rounded.
 #pragma once
 
-#include <glm/vec3.hpp>
 #include <limits>
 #include <optional>
+
+#include <glm/vec3.hpp>
 
 #include "hal/error.hpp"
 #include "host/grid/lattice.hpp"
@@ -24,8 +25,8 @@ inline constexpr std::uint32_t kNoTriangle = 0xFFFFFFFFU;  ///< no triangle is i
 struct Segment {
   glm::ivec3 p0{0};  ///< lattice end points, each in [0, box]
   glm::ivec3 p1{0};
-  double t0 = 0.0;  ///< ray parameter at p0, relative error <= 1e-13
-  double t1 = 0.0;  ///< ray parameter at p1, relative error <= 1e-13
+  double t0 = 0.0;                     ///< ray parameter at p0, relative error <= 1e-13
+  double t1 = 0.0;                     ///< ray parameter at p1, relative error <= 1e-13
   std::uint32_t ignore = kNoTriangle;  ///< global id of the triangle that the ray leaves
 
   [[nodiscard]] bool is_miss() const { return p0 == p1; }

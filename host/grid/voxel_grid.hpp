@@ -1,11 +1,13 @@
 // The uniform grid over the lattice box and the list of triangles that each voxel refers to.
 #pragma once
 
+#include <array>
 #include <cstdint>
-#include <glm/vec3.hpp>
 #include <optional>
 #include <span>
 #include <vector>
+
+#include <glm/vec3.hpp>
 
 #include "hal/error.hpp"
 #include "host/grid/lattice.hpp"
@@ -25,7 +27,8 @@ struct VoxelGrid {
   }
   [[nodiscard]] std::size_t index(const glm::ivec3& c) const {
     return (static_cast<std::size_t>(c.z) * static_cast<std::size_t>(count.y) +
-            static_cast<std::size_t>(c.y)) * static_cast<std::size_t>(count.x) +
+            static_cast<std::size_t>(c.y)) *
+               static_cast<std::size_t>(count.x) +
            static_cast<std::size_t>(c.x);
   }
 };
@@ -53,8 +56,7 @@ Result<VoxelGrid> make_grid(const Lattice& lattice, std::size_t triangles,
                             std::optional<glm::ivec3> wanted, double density = 4.0);
 
 /// Puts every triangle into every voxel whose box, grown by the margin, it meets (a separating
-/// axis test in integers, so none is lost), by a counting sort.
-VoxelLists bin_triangles(const Lattice& lattice, const VoxelGrid& grid,
-                         std::span<const LatticeTriangle> triangles);
+/// axis test in integers, so none is lost), by a counting sort. Degenerate triangles are left out.
+VoxelLists bin_triangles(const VoxelGrid& grid, std::span<const LatticeTriangle> triangles);
 
 }  // namespace gridrt

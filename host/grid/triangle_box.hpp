@@ -1,0 +1,40 @@
+// Does a lattice triangle meet a box? By separating axes, in integers.
+#pragma once
+
+#include <glm/vec3.hpp>
+
+#include "host/grid/lattice.hpp"
+
+namespace gridrt {
+
+/// A closed box in quarter lattice steps (so that the halves of a voxel have integer centres):
+/// |x - centre| <= half per axis.
+struct QuarterBox {
+  glm::i64vec3 centre{0};
+  glm::i64vec3 half{0};
+};
+
+/// The box [lo, hi] (lattice steps), or one half of it along `axis` (half 0 or 1), grown by
+/// `margin` lattice steps on every side.
+QuarterBox quarter_box(const glm::ivec3& lo, const glm::ivec3& hi, int margin);
+QuarterBox quarter_half_box(const glm::ivec3& lo, const glm::ivec3& hi, int margin, int axis,
+                            int half);
+
+/// A triangle prepared for many boxes. Exact for bits <= 24.
+/// Source of the method: Akenine-Moeller, "Fast 3D Triangle-Box Overlap Testing", 2001.
+class TriangleBoxTest {
+ public:
+  explicit TriangleBoxTest(const LatticeTriangle& triangle);
+  [[nodiscard]] bool meets(const QuarterBox& box) const;
+
+ private:
+  template <class Scalar>
+  [[nodiscard]] bool plane_meets(const QuarterBox& box) const;
+
+  std::array<glm::i64vec3, 3> v_{};     ///< quarter steps
+  std::array<glm::i64vec3, 3> edge_{};  ///< lattice steps
+  glm::i64vec3 normal_{0};              ///< lattice steps squared
+  bool narrow_ = true;                  ///< 64 bits hold the plane test
+};
+
+}  // namespace gridrt
