@@ -1,0 +1,48 @@
+// A loop over a range, shared out over threads; what it computes never depends on their number.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <system_error>
+#include <thread>
+#include <vector>
+
+namespace gridrt {
+
+/// Threads to use for a wish of `threads` (0: one a core), at least 1.
+inline int resolve_threads(int threads) {
+  if (threads > 0) return threads;
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+/// Calls body(i) once for every i in [0, count), in any order, from up to `threads` threads. The
+/// body must not throw and must write only what belongs to its own i.
+template <class Body>
+void parallel_for(int threads, std::size_t count, const Body& body) {
+  constexpr std::size_t kGrain = 1024;
+  std::atomic<std::size_t> next{0};
+  const auto work = [&] {
+    for (;;) {
+      const std::size_t first = next.fetch_add(kGrain, std::memory_order_relaxed);
+      if (first >= count) return;
+      const std::size_t last = std::min(count, first + kGrain);
+      for (std::size_t i = first; i < last; ++i) body(i);
+    }
+  };
+  const std::size_t useful = (count + kGrain - 1) / kGrain;
+  const std::size_t helpers =
+      std::min(useful, static_cast<std::size_t>(resolve_threads(threads))) - (useful > 0 ? 1 : 0);
+  std::vector<std::jthread> pool;
+  pool.reserve(helpers);
+  for (std::size_t i = 0; i < helpers; ++i) {
+    try {
+      pool.emplace_back(work);
+    } catch (const std::system_error&) {
+      break;  // no more threads to be had: the others do the work
+    }
+  }
+  work();
+}
+
+}  // namespace gridrt
