@@ -79,12 +79,14 @@ def byte_struct(s: Struct) -> str:
     for f in s.fields:
         lines += [store_one(f, f"value.{f.name}{sub}", at) for sub, at in elements(f)]
     lines += ["}", "",
-              f"constexpr {s.name} load_{snake(s.name)}("
-              f"std::span<const std::byte, {s.name}::kBytes> in) {{",
-              f"  {s.name} value;"]
+              f"constexpr void load(std::span<const std::byte, {s.name}::kBytes> in, "
+              f"{s.name}& value) {{"]
     for f in s.fields:
         lines += [f"  value.{f.name}{sub} = {load_one(f, at)};" for sub, at in elements(f)]
-    lines += ["  return value;", "}", "", ""]
+    lines += ["}", "",
+              f"constexpr {s.name} load_{snake(s.name)}("
+              f"std::span<const std::byte, {s.name}::kBytes> in) {{",
+              f"  {s.name} value;", "  load(in, value);", "  return value;", "}", "", ""]
     return "\n".join(lines)
 
 

@@ -1,0 +1,62 @@
+// The host's end of a link to a device: two byte streams and the control reports.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "gridrt_protocol.hpp"
+#include "hal/error.hpp"
+
+namespace gridrt {
+
+/// Moves bytes, knows nothing of frames. Used by one thread at a time.
+class Transport {
+ public:
+  Transport() = default;
+  Transport(const Transport&) = delete;
+  Transport& operator=(const Transport&) = delete;
+  virtual ~Transport() = default;
+
+  /// Hands all bytes to the device or to a queue on the way there. May wait while the device takes
+  /// none. Errors: kTransport (the link is gone), kTimeout (the device has stopped taking bytes).
+  virtual Result<void> send(std::span<const std::byte> bytes) = 0;
+
+  /// Waits until bytes have come or the timeout is over; returns how many were written to `out`,
+  /// 0 after the timeout. Where a transfer ends means nothing. Errors: kTransport.
+  virtual Result<std::size_t> receive(std::span<std::byte> out,
+                                      std::chrono::milliseconds timeout) = 0;
+
+  /// Reads a feature report: `body` receives the bytes behind the report's id, zeros where the
+  /// device sent fewer; at most kReportBytes - 1. Errors: kTransport, kTimeout, kUnsupported (the
+  /// device has no such report).
+  virtual Result<void> get_feature(std::uint8_t id, std::span<std::byte> body) = 0;
+
+  /// Writes a feature report, `body` being the bytes behind its id. Errors: as get_feature, and
+  /// kProtocol if the device refuses the content.
+  virtual Result<void> set_feature(std::uint8_t id, std::span<const std::byte> body) = 0;
+};
+
+/// Reads a report as its struct, as in get_report<protocol::StatusReport>(transport).
+template <class Report>
+Result<Report> get_report(Transport& transport) {
+  std::array<std::byte, Report::kBytes> body{};
+  if (auto done = transport.get_feature(Report::kId, body); !done) {
+    return std::unexpected(std::move(done.error()));
+  }
+  Report report;
+  protocol::load(body, report);
+  return report;
+}
+
+/// Writes a report.
+template <class Report>
+Result<void> set_report(Transport& transport, const Report& report) {
+  std::array<std::byte, Report::kBytes> body{};
+  protocol::store(report, body);
+  return transport.set_feature(Report::kId, body);
+}
+
+}  // namespace gridrt
