@@ -1,0 +1,110 @@
+#include "host/pe/pe.hpp"
+
+namespace gridrt {
+namespace {
+
+using protocol::ErrorCode;
+using protocol::SectionKind;
+
+/// True if the triangle may be met within the voxel: on every axis the ray and the triangle share
+/// a half.
+bool share_halves(HalfMask a, HalfMask b) {
+  const unsigned both = static_cast<unsigned>(a) & b;
+  return (both & 0x03U) != 0 && (both & 0x0CU) != 0 && (both & 0x30U) != 0;
+}
+
+}  // namespace
+
+PeCounters& PeCounters::operator+=(const PeCounters& o) {
+  rays += o.rays;
+  steps += o.steps;
+  tests += o.tests;
+  masked += o.masked;
+  interrupts += o.interrupts;
+  feedback_waits += o.feedback_waits;
+  return *this;
+}
+
+Accepted<Pe> Pe::decode(const protocol::ImageHeader& header, std::uint8_t number,
+                        std::span<const std::byte> references, std::span<const std::byte> triangles,
+                        std::span<const std::byte> vertices) {
+  const protocol::ReferenceCodec reference_codec(header);
+  const protocol::TriangleCodec triangle_codec(header);
+  const protocol::VertexCodec vertex_codec(header);
+  if (!reference_codec.valid() || !triangle_codec.valid() || !vertex_codec.valid()) {
+    return refuse(ErrorCode::kBadHeader, 104);  // offset of the first width
+  }
+  const auto bad = [&](SectionKind kind) {
+    return refuse(ErrorCode::kBadSection, section_detail(kind, number));
+  };
+  if (vertices.size() % vertex_codec.stride() != 0) return bad(SectionKind::kVertices);
+  if (triangles.size() % triangle_codec.stride() != 0) return bad(SectionKind::kTriangles);
+  if (references.size() % reference_codec.stride() != 0) return bad(SectionKind::kReferences);
+
+  std::vector<glm::ivec3> corners(vertices.size() / vertex_codec.stride());
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const protocol::VertexRecord record = vertex_codec.at(vertices, i);
+    for (int a = 0; a < 3; ++a) {
+      const std::uint32_t q = record.q[static_cast<std::size_t>(a)];
+      const auto j = static_cast<std::size_t>(a);
+      if (q > static_cast<std::uint32_t>(header.max_q[j])) return bad(SectionKind::kVertices);
+      corners[i][a] = static_cast<std::int32_t>(q);
+    }
+  }
+  Pe pe;
+  pe.triangles_.resize(triangles.size() / triangle_codec.stride());
+  for (std::size_t i = 0; i < pe.triangles_.size(); ++i) {
+    const protocol::TriangleRecord record = triangle_codec.at(triangles, i);
+    for (std::size_t c = 0; c < 3; ++c) {
+      if (record.vertex[c] >= corners.size()) return bad(SectionKind::kTriangles);
+      pe.triangles_[i].corners.v[c] = corners[record.vertex[c]];
+    }
+    if (record.id >= header.local_ids) return bad(SectionKind::kTriangles);
+    pe.triangles_[i].id = record.id;
+  }
+  pe.references_.resize(references.size() / reference_codec.stride());
+  for (std::size_t i = 0; i < pe.references_.size(); ++i) {
+    const protocol::ReferenceRecord record = reference_codec.at(references, i);
+    if (record.triangle >= pe.triangles_.size()) return bad(SectionKind::kReferences);
+    pe.references_[i] = {record.triangle, static_cast<HalfMask>(record.mask)};
+  }
+  return pe;
+}
+
+void Pe::test(const PeRay& ray, std::uint32_t first, std::uint32_t count, HalfMask halves,
+              HitKey& best, PeCounters& counters, PeObserver* observer) const {
+  for (const VoxelReference& reference : std::span(references_).subspan(first, count)) {
+    const Triangle& triangle = triangles_[reference.triangle];
+    if (!share_halves(reference.mask, halves)) {
+      ++counters.masked;
+      if (observer != nullptr) observer->on_masked(triangle.id);
+      continue;
+    }
+    if (triangle.id == ray.ignore) continue;
+    ++counters.tests;
+    const std::optional<ExactHit> hit = intersect_exact(ray.p0, ray.p1, triangle.corners);
+    std::optional<HitKey> key;
+    if (hit) {
+      key = HitKey{hit_quotient(*hit), triangle.id};
+      if (*key < best) best = *key;
+    }
+    if (observer != nullptr) observer->on_test(triangle.id, key);
+  }
+}
+
+bool Pe::test_any(const PeRay& ray, std::uint32_t first, std::uint32_t count, HalfMask halves,
+                  PeCounters& counters) const {
+  for (const VoxelReference& reference : std::span(references_).subspan(first, count)) {
+    const Triangle& triangle = triangles_[reference.triangle];
+    if (!share_halves(reference.mask, halves)) {
+      ++counters.masked;
+      continue;
+    }
+    if (triangle.id == ray.ignore) continue;
+    ++counters.tests;
+    if (intersect_exact(ray.p0, ray.p1, triangle.corners)) return true;
+  }
+  return false;
+}
+
+}  // namespace gridrt

@@ -1,0 +1,72 @@
+// A processing element: the triangles of its voxels in a memory of its own, and the exact test.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "gridrt_protocol.hpp"
+#include "host/grid/intersect.hpp"
+#include "host/grid/voxel_grid.hpp"
+#include "host/pe/refusal.hpp"
+
+namespace gridrt {
+
+/// A ray as a PE receives it.
+struct PeRay {
+  glm::ivec3 p0{0};
+  glm::ivec3 p1{0};
+  std::uint32_t ignore = kNoTriangle;  ///< local id that is never hit
+};
+
+/// What PEs and traversal count.
+struct PeCounters {
+  std::uint64_t rays = 0;
+  std::uint64_t steps = 0;
+  std::uint64_t tests = 0;
+  std::uint64_t masked = 0;
+  std::uint64_t interrupts = 0;
+  std::uint64_t feedback_waits = 0;
+
+  PeCounters& operator+=(const PeCounters& o);
+};
+
+/// Told of each reference that a PE looks at (for --explain); `hit` is empty on a miss.
+class PeObserver {
+ public:
+  virtual ~PeObserver() = default;
+  virtual void on_masked(std::uint32_t local_id) = 0;
+  virtual void on_test(std::uint32_t local_id, const std::optional<HitKey>& hit) = 0;
+};
+
+/// Sees the three sections of its own image and nothing else.
+class Pe {
+ public:
+  /// Decodes a PE's sections and checks every index. `number` only names the PE in refusals.
+  static Accepted<Pe> decode(const protocol::ImageHeader& header, std::uint8_t number,
+                             std::span<const std::byte> references,
+                             std::span<const std::byte> triangles,
+                             std::span<const std::byte> vertices);
+
+  /// References in this PE's memory.
+  [[nodiscard]] std::size_t references() const { return references_.size(); }
+
+  /// Tests the references [first, first + count) whose half-voxel mask meets `halves` and lowers
+  /// `best` to the smallest key found. The range lies within references().
+  void test(const PeRay& ray, std::uint32_t first, std::uint32_t count, HalfMask halves,
+            HitKey& best, PeCounters& counters, PeObserver* observer = nullptr) const;
+
+  /// The same, but stops at the first hit; true if there is one.
+  bool test_any(const PeRay& ray, std::uint32_t first, std::uint32_t count, HalfMask halves,
+                PeCounters& counters) const;
+
+ private:
+  struct Triangle {
+    LatticeTriangle corners;
+    std::uint32_t id;
+  };
+  std::vector<VoxelReference> references_;
+  std::vector<Triangle> triangles_;
+};
+
+}  // namespace gridrt
