@@ -1,5 +1,6 @@
 // Traces two rays through a scene made in memory and prints what they hit.
 #include <cstdio>
+
 #include <gridrt.hpp>
 
 int main() {
