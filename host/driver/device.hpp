@@ -28,9 +28,9 @@ enum class Query { kClosestHit, kAnyHit };
 
 /// How to open a device and talk to it.
 struct DeviceOptions {
-  std::string name = "auto";     ///< auto, seq, omp; usb[:SERIAL], sim, mpi when built in
-  std::string schedule = "rays"; ///< of software PEs
-  int threads = 0;               ///< of omp; 0: all cores
+  std::string name = "auto";          ///< auto, seq, omp; usb[:SERIAL], sim, mpi when built in
+  std::string schedule = "rays";      ///< of software PEs
+  int threads = 0;                    ///< of omp; 0: all cores
   std::size_t rays_per_frame = 8192;  ///< batch size on the link, >= 1
   int frames_in_flight = 4;           ///< >= 1
   int timeout_ms = 10000;             ///< longest wait for one answer
@@ -38,13 +38,13 @@ struct DeviceOptions {
 
 /// What a device has done since it was opened.
 struct DeviceCounters {
-  std::uint64_t rays = 0;         ///< traced (segments that are misses by definition are not sent)
-  std::uint64_t steps = 0;        ///< traversal steps
-  std::uint64_t tests = 0;        ///< exact triangle tests
-  std::uint64_t masked = 0;       ///< references skipped by the half-voxel mask
-  std::uint64_t interrupts = 0;   ///< later voxels cancelled by a hit
+  std::uint64_t rays = 0;        ///< traced (segments that are misses by definition are not sent)
+  std::uint64_t steps = 0;       ///< traversal steps
+  std::uint64_t tests = 0;       ///< exact triangle tests
+  std::uint64_t masked = 0;      ///< references skipped by the half-voxel mask
+  std::uint64_t interrupts = 0;  ///< later voxels cancelled by a hit
   std::uint64_t feedback_waits = 0;
-  std::uint64_t cycles = 0;       ///< of a clocked device, else 0
+  std::uint64_t cycles = 0;  ///< of a clocked device, else 0
   std::uint64_t bytes_out = 0;
   std::uint64_t bytes_in = 0;
   std::uint64_t frames_retried = 0;

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "hal/record_sizes.hpp"
 #include "host/grid/partition.hpp"
 #include "host/pe/ray_batch.hpp"
 
@@ -126,11 +127,11 @@ Accepted<void> SoftwareDevice::trace(const Frame& frame, FrameBuilder& reply) {
   if (frame.payload.size() < kHead) return refuse(ErrorCode::kBadLength, frame.header.length);
   const protocol::TraceHead head = protocol::load_trace_head(frame.payload.first<kHead>());
   const std::span<const std::byte> records = frame.payload.subspan(kHead);
-  if (head.count == 0 || records.size() != head.count * ray_bytes(frame.layout())) {
+  if (head.count == 0 || records.size() != head.count * ray_record_bytes(frame.layout())) {
     return refuse(ErrorCode::kBadLength, frame.header.length);
   }
   reply.append(frame.payload.first(kHead));
-  const std::span<std::byte> hits = reply.extend(head.count * hit_bytes(frame.layout()));
+  const std::span<std::byte> hits = reply.extend(head.count * hit_record_bytes(frame.layout()));
   return trace_batch(*image_, records, hits, options_.threads, counters_);
 }
 

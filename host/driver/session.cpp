@@ -1,0 +1,209 @@
+#include "host/driver/session.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "host/driver/ray_records.hpp"
+#include "host/driver/upload.hpp"
+
+namespace gridrt {
+namespace {
+
+using protocol::ErrorCode;
+using protocol::FrameType;
+
+constexpr int kMostAttempts = 16;  ///< times that one batch is sent before it is given up
+
+}  // namespace
+
+Session::Session(std::unique_ptr<Transport> transport, const DeviceOptions& options)
+    : options_(options),
+      connection_(std::move(transport), std::chrono::milliseconds(options.timeout_ms)) {}
+
+Result<std::unique_ptr<Session>> Session::open(std::unique_ptr<Transport> transport,
+                                               const DeviceOptions& options) {
+  if (options.rays_per_frame < 1 || options.frames_in_flight < 1 || options.timeout_ms < 1) {
+    return fail(ErrorKind::kUsage, "batch size, frames in flight and time limit must be positive");
+  }
+  std::unique_ptr<Session> session(new Session(std::move(transport), options));
+  Transport& link = session->connection_.transport();
+  const auto identity = get_report<protocol::IdentityReport>(link);
+  if (!identity) return std::unexpected(identity.error());
+  if (identity->protocol_version != protocol::kVersion) {
+    return fail(ErrorKind::kUnsupported,
+                fmt::format("the device speaks protocol version {}, this program version {}",
+                            identity->protocol_version, protocol::kVersion),
+                "use the firmware and the program of one release");
+  }
+  const auto capabilities = get_report<protocol::CapabilitiesReport>(link);
+  if (!capabilities) return std::unexpected(capabilities.error());
+  session->capabilities_ = *capabilities;
+  const auto end = std::ranges::find(identity->name, std::uint8_t{0});
+  session->name_.assign(identity->name.begin(), end);
+  if (capabilities->max_payload < 64) {
+    return fail(ErrorKind::kProtocol, fmt::format("the device '{}' takes payloads of {} bytes only",
+                                                  session->name_, capabilities->max_payload));
+  }
+  return session;
+}
+
+Result<void> Session::load(const Image& image) {
+  answers_.reset();
+  if (auto fits = check_fits(image, capabilities_); !fits) return fits;
+  Result<Answers> answers = Answers::make(image);
+  if (!answers) return std::unexpected(std::move(answers.error()));
+  if (auto done = upload(connection_, image, capabilities_, retries_); !done) return done;
+  layout_ = static_cast<protocol::Layout>(image.header.layout);
+  answers_ = std::move(*answers);
+  return {};
+}
+
+std::size_t Session::batch_size() const {
+  const std::size_t room =
+      (capabilities_.max_payload - protocol::TraceHead::kBytes) / ray_record_bytes(layout_);
+  return std::min(options_.rays_per_frame, room);
+}
+
+Result<void> Session::trace(std::span<const Segment> segments, Query query, std::span<Hit> hits) {
+  if (!answers_) return fail(ErrorKind::kUsage, "no image is loaded", "load an image first");
+  if (hits.size() != segments.size()) {
+    return fail(ErrorKind::kInternal, "trace() needs a hit for each segment");
+  }
+  Work work{segments, query, hits, {}, {}};
+  const Hit miss = query == Query::kAnyHit ? any_hit_answer(false) : Hit{};
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    hits[i] = miss;
+    if (!segments[i].is_miss()) work.sent.push_back(i);
+  }
+  std::size_t next = 0;
+  while (next < work.sent.size() || !work.in_flight.empty()) {
+    while (next < work.sent.size() &&
+           work.in_flight.size() < static_cast<std::size_t>(options_.frames_in_flight)) {
+      Result<Batch> batch = make_batch(work, next);
+      if (!batch) return std::unexpected(std::move(batch.error()));
+      next += batch->count;
+      work.in_flight.push_back(std::move(*batch));
+      if (auto sent = connection_.send(work.in_flight.back().frame); !sent) return sent;
+    }
+    if (auto collected = collect(work); !collected) return collected;
+    while (!work.in_flight.empty() && work.in_flight.front().done) work.in_flight.pop_front();
+  }
+  return {};
+}
+
+Result<Session::Batch> Session::make_batch(const Work& work, std::size_t first) {
+  Batch batch;
+  batch.sequence = connection_.next_sequence();
+  batch.first = first;
+  batch.count = std::min(batch_size(), work.sent.size() - first);
+  FrameBuilder builder(batch.frame, FrameType::kTrace, layout_, batch.sequence);
+  std::array<std::byte, protocol::TraceHead::kBytes> head{};
+  protocol::store(protocol::TraceHead{static_cast<std::uint32_t>(batch.count), batch.sequence},
+                  head);
+  builder.append(head);
+  const std::size_t bytes = ray_record_bytes(layout_);
+  const std::span<std::byte> records = builder.extend(batch.count * bytes);
+  for (std::size_t i = 0; i < batch.count; ++i) {
+    const Segment& segment = work.segments[work.sent[first + i]];
+    pack_ray(layout_, segment, answers_->local_id(segment.ignore), work.query,
+             records.subspan(i * bytes, bytes));
+  }
+  if (auto built = builder.finish(); !built) return std::unexpected(std::move(built.error()));
+  return batch;
+}
+
+Result<void> Session::collect(Work& work) {
+  const Result<std::optional<Frame>> frame = connection_.receive();
+  if (!frame) return std::unexpected(frame.error());
+  if (*frame) return take(work, **frame);
+  // Silence: whatever is still open was lost on the way there or back.
+  for (Batch& batch : work.in_flight) {
+    if (batch.done) continue;
+    if (auto sent = send_again(batch); !sent) return sent;
+  }
+  return {};
+}
+
+Result<void> Session::take(Work& work, const Frame& frame) {
+  const auto batch = std::ranges::find_if(work.in_flight, [&](const Batch& b) {
+    return !b.done && b.sequence == frame.header.sequence;
+  });
+  // Not ours, or answered already: a late or doubled frame.
+  if (batch == work.in_flight.end()) return {};
+  if (frame.type() == FrameType::kHits) return take_hits(work, *batch, frame);
+  if (frame.type() == FrameType::kError) return take_error(*batch, frame);
+  return {};
+}
+
+Result<void> Session::take_hits(Work& work, Batch& batch, const Frame& frame) {
+  constexpr std::size_t kHead = protocol::TraceHead::kBytes;
+  const std::size_t bytes = hit_record_bytes(layout_);
+  const auto broken = [&](const char* what) {
+    return fail(ErrorKind::kProtocol, fmt::format("the device '{}' answers with {}", name_, what),
+                "this is a defect of the device");
+  };
+  if (frame.layout() != layout_) return broken("records of another layout");
+  if (frame.payload.size() != kHead + batch.count * bytes) return broken("a wrong number of hits");
+  const protocol::TraceHead head = protocol::load_trace_head(frame.payload.first<kHead>());
+  if (head.count != batch.count || head.tag != batch.sequence) return broken("a wrong batch");
+  for (std::size_t i = 0; i < batch.count; ++i) {
+    const DeviceHit answer = unpack_hit(layout_, frame.payload.subspan(kHead + i * bytes, bytes));
+    if (!answer.hit) continue;
+    const std::size_t index = work.sent[batch.first + i];
+    if (work.query == Query::kAnyHit) {
+      work.hits[index] = any_hit_answer(true);
+      continue;
+    }
+    if (answer.id >= answers_->size()) return broken("an id beyond the image");
+    const std::optional<Hit> hit = answers_->hit(work.segments[index], answer.id);
+    if (!hit) return broken("a triangle that the ray does not meet");
+    work.hits[index] = *hit;
+  }
+  batch.done = true;
+  return {};
+}
+
+Result<void> Session::take_error(Batch& batch, const Frame& frame) {
+  constexpr std::size_t kBytes = protocol::ErrorBody::kBytes;
+  if (frame.payload.size() != kBytes) return {};
+  const protocol::ErrorBody error = protocol::load_error_body(frame.payload.first<kBytes>());
+  const auto code = static_cast<ErrorCode>(error.code);
+  if (code == ErrorCode::kBadPayloadCrc) return send_again(batch);
+  return fail(ErrorKind::kDevice, fmt::format("the device '{}' refuses rays: {} (detail {})", name_,
+                                              protocol::name(code), error.detail));
+}
+
+Result<void> Session::send_again(Batch& batch) {
+  if (batch.attempts >= kMostAttempts) {
+    return fail(ErrorKind::kTimeout,
+                fmt::format("the device '{}' has not answered a batch of {} rays in {} attempts of "
+                            "{} ms",
+                            name_, batch.count, batch.attempts, options_.timeout_ms),
+                "check the device and its cable, or use a longer time limit");
+  }
+  ++batch.attempts;
+  ++retries_;
+  return connection_.send(batch.frame);
+}
+
+Result<DeviceCounters> Session::counters() {
+  const auto report = get_report<protocol::CountersReport>(connection_.transport());
+  if (!report) return std::unexpected(report.error());
+  DeviceCounters c;
+  c.rays = report->rays;
+  c.steps = report->steps;
+  c.tests = report->tests;
+  c.masked = report->masked;
+  c.interrupts = report->interrupts;
+  c.feedback_waits = report->feedback_waits;
+  c.cycles = report->cycles;
+  c.bytes_out = connection_.bytes_out();
+  c.bytes_in = connection_.bytes_in();
+  c.frames_retried = retries_;
+  return c;
+}
+
+}  // namespace gridrt
