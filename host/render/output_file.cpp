@@ -45,6 +45,8 @@ std::string advice_for(int code) {
   }
 }
 
+std::string name_of(int descriptor) { return fmt::format("/proc/self/fd/{}", descriptor); }
+
 }  // namespace
 
 OutputFile::OutputFile(OutputFile&& other) noexcept
@@ -85,6 +87,21 @@ std::unexpected<Error> OutputFile::failure(std::string_view what, int code) cons
       advice_for(code));
 }
 
+template <class Make>
+int OutputFile::name_temporary(const Make& make) {
+  const fs::path folder = target_.has_parent_path() ? target_.parent_path() : ".";
+  constexpr int kTries = 1000;
+  for (int i = 0; i < kTries; ++i) {
+    fs::path name = folder / fmt::format(".gridrt-{}-{}", ::getpid(), i);
+    if (make(name)) {
+      temporary_ = std::move(name);
+      return 0;
+    }
+    if (errno != EEXIST) return errno;
+  }
+  return EEXIST;
+}
+
 Result<OutputFile> OutputFile::create(const fs::path& path) {
   OutputFile file;
   file.path_ = path;
@@ -101,19 +118,19 @@ Result<OutputFile> OutputFile::create(const fs::path& path) {
     }
     // A rename would replace a file that its owner has made read-only.
     if (::access(file.target_.c_str(), W_OK) != 0) return file.failure("write", errno);
+  } else if (errno != ENOENT) {
+    return file.failure("write", errno);
   }
   const fs::path folder = file.target_.has_parent_path() ? file.target_.parent_path() : ".";
-  constexpr int kTries = 1000;
-  for (int i = 0; i < kTries; ++i) {
-    fs::path name = folder / fmt::format(".gridrt-{}-{}", ::getpid(), i);
+  // A file without a name vanishes even if the program is killed.
+  file.descriptor_ = ::open(folder.c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666);
+  if (file.descriptor_ >= 0 && ::access(name_of(file.descriptor_).c_str(), F_OK) == 0) return file;
+  if (file.descriptor_ >= 0) ::close(file.descriptor_);  // no /proc, so it could not be named later
+  const auto make = [&](const fs::path& name) {
     file.descriptor_ = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (file.descriptor_ >= 0) {
-      file.temporary_ = std::move(name);
-      break;
-    }
-    if (errno != EEXIST) break;
-  }
-  if (file.descriptor_ < 0) return file.failure("create", errno);
+    return file.descriptor_ >= 0;
+  };
+  if (const int code = file.name_temporary(make); code != 0) return file.failure("create", code);
   return file;
 }
 
@@ -145,6 +162,12 @@ Result<void> OutputFile::commit() {
       code = errno;
     }
     if (code == 0 && ::fsync(descriptor_) != 0 && errno != EINVAL && errno != ENOTSUP) code = errno;
+  }
+  if (code == 0 && !direct_ && temporary_.empty()) {
+    const std::string open_file = name_of(descriptor_);
+    code = name_temporary([&](const fs::path& name) {
+      return ::linkat(AT_FDCWD, open_file.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0;
+    });
   }
   const int descriptor = std::exchange(descriptor_, -1);
   if (::close(descriptor) != 0 && errno != EINTR && code == 0) code = errno;

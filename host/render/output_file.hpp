@@ -39,11 +39,15 @@ class OutputFile {
   void discard() noexcept;
   [[nodiscard]] std::unexpected<Error> failure(std::string_view what, int code) const;
 
+  /// Finds a free name beside the target for `make` to create; 0 or the errno of the failure.
+  template <class Make>
+  int name_temporary(const Make& make);
+
   int descriptor_ = -1;
   bool direct_ = false;              ///< the target itself is being written
   std::filesystem::path path_;       ///< as the user named it
   std::filesystem::path target_;     ///< path_ with symbolic links followed
-  std::filesystem::path temporary_;  ///< empty where direct
+  std::filesystem::path temporary_;  ///< name beside the target, empty while there is none
 };
 
 /// Creates, writes and commits in one go.

@@ -1,0 +1,81 @@
+#include "host/app/image_program.hpp"
+
+#include <cstdio>
+#include <string>
+#include <variant>
+
+#include <fmt/format.h>
+
+#include "host/app/exit_code.hpp"
+#include "host/app/options.hpp"
+#include "host/app/prepared_scene.hpp"
+#include "host/app/progress.hpp"
+#include "host/image/image_file.hpp"
+#include "host/scene/load.hpp"
+
+namespace gridrt {
+namespace {
+
+constexpr std::string_view kProgram = "gridrt-image";
+
+Result<void> print(const std::string& text) {
+  if (std::fputs(text.c_str(), stdout) < 0 || std::fflush(stdout) != 0) {
+    return fail(ErrorKind::kFile, "cannot write to standard output");
+  }
+  return {};
+}
+
+Result<void> make(const ImageProgramOptions& options) {
+  if (is_image_path(options.scene)) {
+    return fail(ErrorKind::kUsage, options.scene + " is an image already",
+                "make it anew from the scene that it was made from");
+  }
+  Progress progress(options.progress);
+  progress.phase("loading");
+  auto scene = load_scene(options.scene);
+  if (!scene) return std::unexpected(scene.error());
+  progress.clear();
+  print_warnings(kProgram, *scene);
+  progress.phase("building");
+  auto image = build_image(*scene, image_options(options.cut, true));
+  if (!image) return std::unexpected(image.error());
+  progress.phase("writing");
+  return write_image(*image, options.output);
+}
+
+Result<void> verify(const std::string& path) {
+  auto image = read_image(path);
+  if (!image) return std::unexpected(image.error());
+  if (auto verified = verify_image(*image); !verified) {
+    Error error = verified.error();
+    if (error.message.find(path) == std::string::npos) error.message = path + ": " + error.message;
+    return std::unexpected(error);
+  }
+  return print(path + ": every bit is as it should be\n");
+}
+
+Result<void> run(const ImageProgramOptions& options) {
+  if (!options.firmware.empty()) {
+    return fail(ErrorKind::kUnsupported, "--firmware is not built in yet: there is no flash image");
+  }
+  if (!options.info.empty()) {
+    auto image = read_image(options.info);
+    if (!image) return std::unexpected(image.error());
+    return print(describe_image(*image));
+  }
+  if (!options.verify.empty()) return verify(options.verify);
+  return make(options);
+}
+
+}  // namespace
+
+int run_image(int argc, const char* const* argv) {
+  auto parsed = parse_image_options(argc, argv);
+  if (!parsed) return report(kProgram, parsed.error());
+  auto done = std::holds_alternative<PrintAndExit>(*parsed)
+                  ? print(std::get<PrintAndExit>(*parsed).text)
+                  : run(std::get<ImageProgramOptions>(*parsed));
+  return done ? kExitOk : report(kProgram, done.error());
+}
+
+}  // namespace gridrt

@@ -1,0 +1,36 @@
+// A scene ready to be traced: loaded, cut and packed.
+#pragma once
+
+#include <string>
+
+#include "hal/error.hpp"
+#include "host/app/options.hpp"
+#include "host/grid/lattice.hpp"
+#include "host/image/image.hpp"
+#include "host/scene/scene.hpp"
+
+namespace gridrt {
+
+struct PreparedScene {
+  Scene scene;
+  Image image;
+  ImageTriangles triangles;
+  Lattice lattice;
+  double load_seconds = 0.0;
+  double build_seconds = 0.0;
+};
+
+/// True for the path of an image file (.grt).
+bool is_image_path(const std::string& spec);
+
+/// Loads any SCENE. Options that contradict what a .grt was made with are refused (kUsage); other
+/// errors are those of load_scene, build_image and read_image.
+Result<PreparedScene> prepare_scene(const std::string& spec, const CutOptions& cut);
+
+/// The image options that stand for `cut`.
+ImageOptions image_options(const CutOptions& cut, bool with_scene);
+
+/// Writes what a loader left out to standard error, each thing once.
+void print_warnings(std::string_view program, const Scene& scene);
+
+}  // namespace gridrt
