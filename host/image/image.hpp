@@ -48,12 +48,16 @@ struct Image {
 
 /// Counts shown by --info and in the statistics, for one PE or for the whole image.
 struct ImageCounts {
-  std::uint64_t triangles = 0;   ///< records in the PE's memory
-  std::uint64_t copies = 0;      ///< of these, triangles that an earlier PE holds too
+  std::uint64_t triangles = 0;  ///< records in the PE's memory
+  std::uint64_t copies = 0;     ///< of these, triangles that an earlier PE holds too
   std::uint64_t vertices = 0;
   std::uint64_t references = 0;
-  std::uint64_t cells = 0;       ///< voxels with references
+  std::uint64_t cells = 0;  ///< voxels with references
 };
+
+/// Counts of every PE, then one entry for the whole image (its copies are those of all PEs).
+/// Sections that are not whole records count what they hold.
+std::vector<ImageCounts> count_image(const Image& image);
 
 /// Snaps, bins, partitions and packs a scene. Errors: those of make_lattice, make_grid and
 /// deal_voxels; kLimit where the compact layout cannot hold the scene, with the sizes and what

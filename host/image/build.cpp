@@ -1,0 +1,111 @@
+#include <array>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "host/image/image.hpp"
+#include "host/image/limits.hpp"
+#include "host/image/pack.hpp"
+#include "host/image/scene_section.hpp"
+#include "host/image/weld.hpp"
+
+namespace gridrt {
+namespace {
+
+constexpr std::size_t kMostTriangles = 0x7FFFFFFFU;  ///< global ids are int32 in results
+constexpr double kDensity = 4.0;                     ///< voxels a triangle
+constexpr double kCoarser = 0.75;                    ///< from one try to the next
+constexpr double kCoarsest = 1.0 / 1024.0;
+
+/// Snaps the scene and leaves out degenerate triangles.
+LocalTriangles make_local(const Scene& scene, const Lattice& lattice) {
+  LocalTriangles local;
+  local.scene_triangles = static_cast<std::uint32_t>(scene.triangles.size());
+  WeldedPoints welded = weld(snap_all(lattice, scene.positions));
+  local.vertices = std::move(welded.points);
+  for (std::size_t i = 0; i < scene.triangles.size(); ++i) {
+    LatticeTriangle triangle{};
+    std::array<std::uint32_t, 3> corners{};
+    for (std::size_t c = 0; c < 3; ++c) {
+      corners[c] = welded.index[scene.triangles[i][c]];
+      triangle.v[c] = local.vertices[corners[c]];
+    }
+    if (is_degenerate(triangle)) continue;
+    local.triangles.push_back(triangle);
+    local.corners.push_back(corners);
+    local.global_ids.push_back(static_cast<std::uint32_t>(i));
+  }
+  return local;
+}
+
+/// Bins, deals and packs for one grid.
+Result<Image> build_with_grid(const LocalTriangles& local, Cut cut, const VoxelGrid& grid) {
+  cut.grid = grid;
+  cut.lists = bin_triangles(grid, local.triangles);
+  auto owners = deal_voxels(grid, cut.lists, cut.mapping, cut.pes);
+  if (!owners) return std::unexpected(std::move(owners.error()));
+  cut.owners = std::move(*owners);
+  return pack_image(local, cut);
+}
+
+/// The finest of a few grids that the layout can hold. Only the compact layout has limits that a
+/// chosen grid can exceed.
+Result<Image> build_with_chosen_grid(const LocalTriangles& local, const Cut& cut) {
+  Result<Image> image = fail(ErrorKind::kInternal, "no grid was tried");
+  for (double density = kDensity; density > kCoarsest; density *= kCoarser) {
+    const auto grid = make_grid(cut.lattice, local.triangles.size(), std::nullopt, density);
+    if (!grid) return std::unexpected(grid.error());
+    image = build_with_grid(local, cut, *grid);
+    if (image || image.error().kind != ErrorKind::kLimit ||
+        cut.layout != protocol::Layout::kCompact) {
+      break;
+    }
+  }
+  return image;
+}
+
+}  // namespace
+
+Result<Image> build_image(const Scene& scene, const ImageOptions& options) {
+  Cut cut;
+  cut.mapping = options.mapping;
+  cut.pes = options.pes;
+  cut.layout = options.layout == protocol::Layout::kCompact ? protocol::Layout::kCompact
+                                                            : protocol::Layout::kWide;
+  if (options.pes < 1 || options.pes > kMaxPes) {
+    return fail(ErrorKind::kUsage, fmt::format("{} PEs asked for", options.pes),
+                fmt::format("choose between 1 and {}", kMaxPes));
+  }
+  if (scene.triangles.size() > kMostTriangles) {
+    return fail(ErrorKind::kLimit,
+                fmt::format("{} triangles, more than {}", scene.triangles.size(), kMostTriangles));
+  }
+  auto lattice = make_lattice(scene.positions, scene.triangles, options.bits);
+  if (!lattice) return std::unexpected(std::move(lattice.error()));
+  cut.lattice = *lattice;
+
+  const LocalTriangles local = make_local(scene, *lattice);
+  if (auto good = check_scene_limits(cut.layout, options.bits, options.pes, local.triangles.size());
+      !good) {
+    return std::unexpected(std::move(good.error()));
+  }
+  Result<Image> image;
+  if (options.grid) {
+    const auto grid = make_grid(*lattice, local.triangles.size(), options.grid);
+    if (!grid) return std::unexpected(grid.error());
+    image = build_with_grid(local, cut, *grid);
+  } else {
+    image = build_with_chosen_grid(local, cut);
+  }
+  if (!image || !options.with_scene) return image;
+
+  auto bytes = pack_scene(scene);
+  if (!bytes) return std::unexpected(std::move(bytes.error()));
+  if (auto added = add_section(*image, protocol::SectionKind::kScene, 0, std::move(*bytes));
+      !added) {
+    return std::unexpected(std::move(added.error()));
+  }
+  return image;
+}
+
+}  // namespace gridrt
