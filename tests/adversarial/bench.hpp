@@ -1,0 +1,71 @@
+// A device beside the truth: the same scene in both, the same rays through both, every answer
+// compared.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "host/driver/device.hpp"
+#include "host/image/image.hpp"
+#include "tests/adversarial/random.hpp"
+#include "tests/truth/tracer.hpp"
+
+namespace gridrt::adversarial {
+
+/// How the device side is set up; nothing of it may change an answer.
+struct Configuration {
+  DeviceOptions device;
+  ImageOptions image;
+};
+
+/// seq or omp; 1, 2, 4 or 8 PEs; any mapping, grid, batch size, thread count and layout.
+Configuration random_configuration(Random& random, int bits);
+
+/// One line that tells a configuration.
+std::string describe(const Configuration& configuration);
+
+/// What was compared and what differed.
+struct Tally {
+  std::size_t rays = 0;
+  std::size_t hits = 0;
+  std::size_t differences = 0;
+  std::string first;  ///< the first difference, in full
+
+  void add(std::string difference);
+  Tally& operator+=(const Tally& other);
+};
+
+/// An open device with a loaded scene, and the truth of that scene.
+class Bench {
+ public:
+  /// `configuration.image.layout` compact falls back to wide where the scene does not fit; a grid
+  /// too fine for the lattice falls back to the default one.
+  static Result<Bench> open(const Scene& scene, const Configuration& configuration);
+
+  [[nodiscard]] const truth::Tracer& truth() const { return *truth_; }
+  [[nodiscard]] const Lattice& lattice() const { return lattice_; }
+  [[nodiscard]] const VoxelGrid& grid() const { return grid_; }
+  [[nodiscard]] Device& device() const { return *device_; }
+
+  /// Rays in scene units: end points, parameters, closest hits (id, t, u, v) and any hits are all
+  /// compared. Returns the device's closest hits.
+  std::vector<Hit> check_rays(std::span<const Ray> rays, Tally& tally) const;
+
+  /// Segments on the lattice, as they are.
+  std::vector<Hit> check_segments(std::span<const Segment> segments, Tally& tally) const;
+
+  /// Both: `segments` are the engine's, `expected` the truth's for the same rays.
+  std::vector<Hit> check(std::span<const Segment> segments,
+                         std::span<const truth::Segment> expected, Tally& tally) const;
+
+ private:
+  Configuration configuration_;
+  Lattice lattice_;
+  VoxelGrid grid_;
+  std::unique_ptr<truth::Tracer> truth_;
+  std::unique_ptr<Device> device_;
+};
+
+}  // namespace gridrt::adversarial

@@ -1,0 +1,17 @@
+# The cases, each device answer against the truth.
+find_package(fmt REQUIRED)
+add_library(gridrt_bench STATIC ${CMAKE_CURRENT_LIST_DIR}/bench.cpp)
+target_link_libraries(gridrt_bench PUBLIC gridrt_adversarial gridrt_driver
+                      PRIVATE gridrt_flags fmt::fmt)
+
+# gridrt_cases(NAME sources...): one program of cases.
+function(gridrt_cases name)
+  add_executable(adversarial_${name} ${ARGN})
+  target_link_libraries(adversarial_${name} PRIVATE gridrt_bench gridrt_flags GTest::gtest_main)
+  gtest_discover_tests(adversarial_${name} DISCOVERY_TIMEOUT 60)
+endfunction()
+
+gridrt_cases(sheets sheets_test.cpp)
+gridrt_cases(aimed aimed_test.cpp)
+gridrt_cases(scaling scaling_test.cpp)
+gridrt_cases(degenerate degenerate_test.cpp)
