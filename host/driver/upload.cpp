@@ -140,7 +140,7 @@ Result<void> check_fits(const Image& image, const protocol::CapabilitiesReport& 
 
 Result<void> upload(Connection& connection, const Image& image,
                     const protocol::CapabilitiesReport& capabilities, std::uint64_t& retries) {
-  const std::vector<std::byte> header = serialize_header(image);
+  const std::vector<std::byte> header = header_section(image);
   const auto send_kind = [&](SectionKind kind, std::uint8_t pe) -> Result<void> {
     if (kind == SectionKind::kHeader) {
       return send_section(connection, capabilities, kind, 0, header);

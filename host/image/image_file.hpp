@@ -29,9 +29,6 @@ std::vector<std::byte> header_section(const Image& image);
 std::vector<std::byte> serialize_image(const Image& image);
 Result<Image> parse_image(std::span<const std::byte> bytes, const std::string& name);
 
-/// The Header section as a device receives it: ImageHeader, directory, CRC-32C.
-std::vector<std::byte> serialize_header(const Image& image);
-
 /// Deep check beyond the CRCs: every index, reference, owner, id order, padding bit, count and
 /// skip distance is what build_image would have written.
 Result<void> verify_image(const Image& image);

@@ -48,6 +48,10 @@ SoftwareDevice::SoftwareDevice(SoftwareDeviceOptions options) : options_(std::mo
 
 Result<void> SoftwareDevice::consume(std::span<const std::byte> bytes) {
   reader_.push(bytes);
+  return handle_frames();
+}
+
+Result<void> SoftwareDevice::handle_frames() {
   while (const std::optional<FrameEvent> event = reader_.next()) {
     const auto* fault = std::get_if<FrameFault>(&*event);
     const Result<void> done =
@@ -147,6 +151,14 @@ Result<void> SoftwareDevice::answer_error(std::uint32_t sequence, const Refusal&
 
 Result<std::size_t> SoftwareDevice::produce(std::span<std::byte> out,
                                             std::chrono::milliseconds /*timeout*/) {
+  // The host has sent all it wants to and waits, so an unfinished frame was cut short on the way;
+  // what it would swallow are the frames behind it.
+  while (out_.empty() && reader_.buffered() > 0) {
+    const std::size_t before = reader_.buffered();
+    reader_.resynchronise();
+    if (auto done = handle_frames(); !done) return std::unexpected(std::move(done.error()));
+    if (reader_.buffered() == before) break;
+  }
   const std::size_t bytes = std::min(out.size(), out_.size() - taken_);
   std::copy_n(out_.begin() + static_cast<std::ptrdiff_t>(taken_), bytes, out.begin());
   taken_ += bytes;

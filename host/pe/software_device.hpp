@@ -29,6 +29,7 @@ class SoftwareDevice final : public Endpoint {
   Result<void> set_feature(std::uint8_t id, std::span<const std::byte> body) override;
 
  private:
+  Result<void> handle_frames();
   Result<void> handle(const Frame& frame);
   Accepted<void> load_section(std::span<const std::byte> payload);
   Accepted<void> commit(std::span<const std::byte> payload);

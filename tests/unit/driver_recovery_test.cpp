@@ -39,6 +39,8 @@ bool same(const std::vector<Hit>& a, const std::vector<Hit>& b) {
   return true;
 }
 
+constexpr int kSeedsEach = 20;
+
 class Recovery : public testing::TestWithParam<int> {
  protected:
   static FaultRates rates(double each) {
@@ -64,13 +66,17 @@ TEST_P(Recovery, SameHitsOverABadLink) {
   link.max_transfer = 97;
   link.to_device = rates(0.02);
   link.to_host = rates(0.02);
-  link.seed = static_cast<std::uint64_t>(GetParam());
-  const std::unique_ptr<Session> bad = open(link, options);
-  EXPECT_TRUE(same(trace_all(*bad, image, segments), expected));
-  EXPECT_GT(bad->counters()->frames_retried, 0U) << "no fault was injected";
+  std::uint64_t retried = 0;
+  for (int i = 0; i < kSeedsEach; ++i) {
+    link.seed = static_cast<std::uint64_t>(GetParam() * kSeedsEach + i);
+    const std::unique_ptr<Session> bad = open(link, options);
+    ASSERT_TRUE(same(trace_all(*bad, image, segments), expected)) << "seed " << link.seed;
+    retried += bad->counters()->frames_retried;
+  }
+  EXPECT_GT(retried, 0U) << "no fault was injected";
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, Recovery, testing::Range(1, 26));
+INSTANTIATE_TEST_SUITE_P(Seeds, Recovery, testing::Range(0, 10));
 
 TEST(RecoveryLimits, ADeadLinkIsATimeoutNotAHang) {
   const Image image = fixture::make_image("builtin:cube");
