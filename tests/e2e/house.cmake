@@ -1,12 +1,21 @@
 # The house rules as tests: scripts, arrows, formatting, analysis, package.
+find_package(Python3 3.11 REQUIRED COMPONENTS Interpreter)
+
 function(house_test name)
   add_test(NAME house.${name} COMMAND ${ARGN} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
-  set_tests_properties(house.${name} PROPERTIES LABELS house TIMEOUT 120)
+  set_tests_properties(house.${name} PROPERTIES LABELS house TIMEOUT 300)
 endfunction()
 
-find_package(Python3 3.11 REQUIRED COMPONENTS Interpreter)
-set(python ${Python3_EXECUTABLE})
-house_test(arrows ${python} tools/arrows)
-house_test(arrows_refuses ${python} tests/e2e/arrows_test.py)
-house_test(setup ${python} tests/e2e/setup_test.py)
-house_test(format tools/lint format)
+house_test(arrows ${Python3_EXECUTABLE} tools/arrows)
+house_test(arrows_refuses ${Python3_EXECUTABLE} tests/e2e/arrows_test.py)
+house_test(setup ${Python3_EXECUTABLE} tests/e2e/setup_test.py)
+house_test(package ${Python3_EXECUTABLE} tests/e2e/package_test.py
+           ${PROJECT_BINARY_DIR} ${CMAKE_CXX_COMPILER})
+
+# The rest speaks of the tools and the build tree that tools/test has prepared.
+if(PROJECT_BINARY_DIR STREQUAL "${PROJECT_SOURCE_DIR}/build")
+  house_test(demo ${Python3_EXECUTABLE} tests/e2e/demo_test.py)
+endif()
+house_test(format ${Python3_EXECUTABLE} tools/lint format)
+house_test(tidy ${Python3_EXECUTABLE} tools/lint --build ${PROJECT_BINARY_DIR} tidy)
+set_tests_properties(house.tidy PROPERTIES LABELS "house;slow" TIMEOUT 1500 PROCESSORS 2)
