@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 
 #include <glm/mat4x4.hpp>
@@ -46,10 +47,11 @@ struct Placement {
 Result<void> append_scene(Scene& into, const Scene& from, const Placement& placement,
                           const std::string& where);
 
-/// Gives every triangle smooth normals: at a vertex, the sum of the normals of its triangles
-/// weighted by their angles there (Thuermer and Wuethrich 1998). Vertices at one position are
-/// taken as one.
-void make_smooth(Scene& scene);
+/// Gives triangles without normals smooth ones: at a vertex, the sum of the normals of its
+/// triangles weighted by their angles there (Thuermer and Wuethrich 1998). Vertices at one position
+/// are taken as one. `groups`: one number a triangle; only triangles of one group share normals,
+/// and those of group 0 stay as they are; empty: all triangles are one group.
+void make_smooth(Scene& scene, std::span<const std::uint32_t> groups = {});
 
 /// Removes normals and triangle_normals: every triangle is flat.
 void make_flat(Scene& scene);

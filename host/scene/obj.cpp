@@ -2,13 +2,13 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "host/scene/assemble.hpp"
+#include "host/scene/mtl.hpp"
 #include "host/scene/number.hpp"
 #include "host/scene/readers.hpp"
 #include "host/scene/text.hpp"
@@ -19,12 +19,12 @@ namespace {
 constexpr std::int64_t kMaxIndex = 0x7FFFFFFF;
 
 // Statements that shape nothing that is drawn here; the second group would draw something.
-constexpr std::array<std::string_view, 18> kNoEffect = {
-    "g",      "o",          "mg",        "vp",    "bevel", "c_interp", "d_interp", "lod", "maplib",
-    "usemap", "shadow_obj", "trace_obj", "ctech", "stech", "call",     "csh",      "vt",  "s"};
-constexpr std::array<std::string_view, 18> kNotDrawn = {
-    "l",    "p",    "cstype", "deg",  "bmat", "step", "curv", "curv2", "surf",
-    "parm", "trim", "hole",   "scrv", "sp",   "end",  "con",  "cdc",   "bzp"};
+constexpr auto kNoEffect = std::to_array<std::string_view>(
+    {"g", "o", "mg", "vp", "bevel", "c_interp", "d_interp", "lod", "maplib", "usemap", "shadow_obj",
+     "trace_obj", "ctech", "stech", "call", "csh", "vt", "s"});
+constexpr auto kNotDrawn = std::to_array<std::string_view>(
+    {"l", "p", "cstype", "deg", "bmat", "step", "curv", "curv2", "surf", "parm", "trim", "hole",
+     "scrv", "sp", "end", "con", "cdc", "bzp"});
 
 template <class List>
 bool contains(const List& list, std::string_view word) {
@@ -89,6 +89,9 @@ class ObjReader {
     if (keyword == "vt") {
       ++texture_count_;
       return {};
+    }
+    if (keyword == "s") {
+      return smoothing_group(line);
     }
     if (keyword == "usemtl") {
       return use_material(trim(line));
@@ -247,6 +250,10 @@ class ObjReader {
     };
     add_triangle(scene_, {vertex_of(a), vertex_of(b), vertex_of(c)}, material_,
                  {normal_of(a), normal_of(b), normal_of(c)});
+    if (group_ != 0) {
+      groups_.resize(scene_.triangles.size(), 0);
+      groups_.back() = group_;
+    }
   }
 
   Result<void> use_material(std::string_view material) {
@@ -264,9 +271,38 @@ class ObjReader {
     return {};
   }
 
-  Result<void> material_library(std::string_view library) {
-    scene_.warnings.push_back(fmt::format("{}:{}: material library '{}' is not read", name_,
-                                          lines_.number(), shorten(library)));
+  // The rest of the line is one name, which may hold blanks, or else several without.
+  Result<void> material_library(std::string_view libraries) {
+    if (auto text = resolve_(std::string(libraries))) {
+      return read_mtl(*text, std::string(libraries), scene_, material_index_);
+    }
+    while (!libraries.empty()) {
+      const std::string library(next_token(libraries));
+      if (library.empty()) {
+        break;
+      }
+      const auto text = resolve_(library);
+      if (!text) {
+        scene_.warnings.push_back(fmt::format("{}:{}: material library: {}", name_, lines_.number(),
+                                              text.error().message));
+        continue;
+      }
+      if (const auto ok = read_mtl(*text, library, scene_, material_index_); !ok) {
+        return ok;
+      }
+    }
+    return {};
+  }
+
+  // "s off" and "s 0" end smoothing.
+  Result<void> smoothing_group(std::string_view line) {
+    const std::string_view token = next_token(line);
+    const auto number = parse_integer(token);
+    if (token != "off" && token != "on" && (!number || *number < 0 || *number > kMaxIndex)) {
+      return bad(fmt::format("'{}' is not a smoothing group", shorten(token)),
+                 "give a number or off");
+    }
+    group_ = number ? static_cast<std::uint32_t>(*number) : (token == "on" ? 1U : 0U);
     return {};
   }
 
@@ -294,6 +330,10 @@ class ObjReader {
         normals = kFlat;
       }
     }
+    if (!groups_.empty()) {
+      groups_.resize(scene_.triangles.size(), 0);
+      make_smooth(scene_, groups_);
+    }
     if (not_drawn_ > 0) {
       scene_.warnings.push_back(fmt::format(
           "{}: {} points, lines, curves or free-form statements are left out", name_, not_drawn_));
@@ -315,7 +355,9 @@ class ObjReader {
   Largest largest_texture_;
   Largest largest_normal_;
   std::uint32_t material_ = 0;
-  std::map<std::string, std::uint32_t, std::less<>> material_index_;
+  MaterialIndex material_index_;
+  std::uint32_t group_ = 0;
+  std::vector<std::uint32_t> groups_;  // one a triangle, empty until a face has one
 };
 
 }  // namespace

@@ -3,10 +3,11 @@
 
 #include <array>
 #include <cstdint>
-#include <glm/vec3.hpp>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include <glm/vec3.hpp>
 
 namespace gridrt {
 
@@ -16,11 +17,11 @@ inline constexpr std::uint32_t kNoIndex = 0xFFFFFFFFU;
 /// Phong material with Whitted's global terms. Colours are linear RGB, each part in [0, 1].
 struct Material {
   std::string name = "default";
-  glm::vec3 ambient{0.1F};   ///< times the ambient light
-  glm::vec3 diffuse{0.7F};   ///< Lambert part, per light
-  glm::vec3 specular{0.0F};  ///< Phong highlight, per light
-  float shininess = 32.0F;   ///< Phong exponent, >= 0
-  glm::vec3 mirror{0.0F};    ///< weight of the reflected ray; all zero: no such ray
+  glm::vec3 ambient{0.1F};       ///< times the ambient light
+  glm::vec3 diffuse{0.7F};       ///< Lambert part, per light
+  glm::vec3 specular{0.0F};      ///< Phong highlight, per light
+  float shininess = 32.0F;       ///< Phong exponent, >= 0
+  glm::vec3 mirror{0.0F};        ///< weight of the reflected ray; all zero: no such ray
   glm::vec3 transmission{0.0F};  ///< weight of the refracted ray; all zero: opaque
   float ior = 1.5F;              ///< index of refraction inside, > 0
   glm::vec3 emission{0.0F};      ///< added as it is
@@ -30,9 +31,9 @@ struct Material {
 struct Light {
   enum class Kind { kPoint, kDirectional };
   Kind kind = Kind::kPoint;
-  glm::dvec3 position{0.0};   ///< of a point light, scene units
+  glm::dvec3 position{0.0};              ///< of a point light, scene units
   glm::dvec3 direction{0.0, -1.0, 0.0};  ///< of a directional light: the way the light travels
-  glm::vec3 colour{1.0F};     ///< linear RGB intensity, >= 0, no fall-off with distance
+  glm::vec3 colour{1.0F};                ///< linear RGB intensity, >= 0, no fall-off with distance
 };
 
 /// A pinhole camera; `fov_degrees` is vertical, in (0, 180).
@@ -55,10 +56,10 @@ struct Scene {
   std::vector<std::uint32_t> triangle_materials;  ///< index into materials, one a triangle
   std::vector<Material> materials;                ///< at least one
   std::vector<Light> lights;
-  std::optional<Camera> camera;        ///< none: the renderer frames the bounding box
-  glm::vec3 background{0.0F};          ///< colour of rays that leave the scene
-  glm::vec3 ambient_light{1.0F};       ///< times Material::ambient
-  std::vector<std::string> warnings;   ///< what a loader left out (textures, lines, points)
+  std::optional<Camera> camera;       ///< none: the renderer frames the bounding box
+  glm::vec3 background{0.0F};         ///< colour of rays that leave the scene
+  glm::vec3 ambient_light{1.0F};      ///< times Material::ambient
+  std::vector<std::string> warnings;  ///< what a loader left out (textures, lines, points)
 };
 
 }  // namespace gridrt
