@@ -24,7 +24,8 @@ constexpr BuiltinOption kLightsOption{
 // All scenes by name, each with the option `lights`.
 std::vector<Builtin> all_builtins() {
   std::vector<Builtin> all;
-  for (auto group : {shape_builtins(), teapot_builtins(), whitted_builtins()}) {
+  for (auto group : {shape_builtins(), teapot_builtins(), whitted_builtins(), room_builtins(),
+                     hard_builtins()}) {
     std::move(group.begin(), group.end(), std::back_inserter(all));
   }
   std::sort(all.begin(), all.end(), [](const Builtin& a, const Builtin& b) {

@@ -59,6 +59,8 @@ struct Builtin {
 std::vector<Builtin> shape_builtins();
 std::vector<Builtin> teapot_builtins();
 std::vector<Builtin> whitted_builtins();
+std::vector<Builtin> room_builtins();
+std::vector<Builtin> hard_builtins();
 
 /// Sebastiano Vigna's splitmix64: 64 random bits a call, the same on every machine.
 class SplitMix64 {
@@ -82,6 +84,10 @@ void add_quad(Scene& scene, const std::array<glm::dvec3, 4>& corners, std::uint3
 /// Adds a geodesic sphere of 20 * 4^subdivisions triangles, welded, with smooth normals if asked.
 void add_icosphere(Scene& scene, const glm::dvec3& centre, double radius,
                    std::uint32_t subdivisions, std::uint32_t material, bool smooth);
+
+/// Adds a box like add_box() whose sides are cut into `cells` x `cells` quads each.
+void add_fine_box(Scene& scene, const glm::dvec3& low, const glm::dvec3& high, std::uint32_t cells,
+                  std::uint32_t material, bool inward);
 
 /// Newell's teapot, y up, standing on y = 0, spout along +x, 3.15 high: each of its 32 patches is
 /// cut into `tessellation` x `tessellation` quads; vertices shared by patches are one; smooth.

@@ -173,6 +173,38 @@ void add_box(Scene& scene, const glm::dvec3& low, const glm::dvec3& high, std::u
   }
 }
 
+void add_fine_box(Scene& scene, const glm::dvec3& low, const glm::dvec3& high, std::uint32_t cells,
+                  std::uint32_t material, bool inward) {
+  // All vertices of a side come from one grid per axis, so that sides meet in equal positions.
+  const auto at = [&](int axis, std::uint32_t i) {
+    return i == cells ? high[axis] : low[axis] + (high[axis] - low[axis]) * i / cells;
+  };
+  for (int side = 0; side < 6; ++side) {
+    const int axis = side / 2;
+    const int u = (axis + 1) % 3;
+    const int v = (axis + 2) % 3;
+    const bool outer = side % 2 == 1;
+    const auto point = [&](std::uint32_t i, std::uint32_t j) {
+      glm::dvec3 p(0.0);
+      p[axis] = outer ? high[axis] : low[axis];
+      p[u] = at(u, i);
+      p[v] = at(v, j);
+      return p;
+    };
+    for (std::uint32_t j = 0; j < cells; ++j) {
+      for (std::uint32_t i = 0; i < cells; ++i) {
+        const std::array<glm::dvec3, 4> around = {point(i, j), point(i + 1, j), point(i + 1, j + 1),
+                                                  point(i, j + 1)};
+        if (outer != inward) {
+          add_quad(scene, around, material);
+        } else {
+          add_quad(scene, {around[3], around[2], around[1], around[0]}, material);
+        }
+      }
+    }
+  }
+}
+
 void add_icosphere(Scene& scene, const glm::dvec3& centre, double radius,
                    std::uint32_t subdivisions, std::uint32_t material, bool smooth) {
   constexpr double kPhi = std::numbers::phi;

@@ -1,6 +1,9 @@
 // Newell's teapot, cut from its patches, and scenes of many of them.
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstddef>
+#include <numbers>
 
 #include <glm/ext/matrix_transform.hpp>
 #include <glm/geometric.hpp>
@@ -9,6 +12,7 @@
 
 #include "host/scene/assemble.hpp"
 #include "host/scene/builtin.hpp"
+#include "host/scene/builtin_looks.hpp"
 #include "host/scene/teapot_patches.hpp"
 
 namespace gridrt::scene_detail {
@@ -102,6 +106,79 @@ Scene make_single(const BuiltinValues& values) {
   return make_teapot(values.integer("tessellation"));
 }
 
+// Three by three teapots on two floors, each turned by 40 degrees more.
+Scene make_eighteen(const BuiltinValues& values) {
+  constexpr int kAcross = 3;
+  constexpr int kFloors = 2;
+  constexpr int kColours = 3;
+  Scene scene;
+  add_material(scene, glossy("red", {0.75F, 0.25F, 0.20F}, 0.1F));
+  add_material(scene, glossy("green", {0.30F, 0.60F, 0.30F}, 0.1F));
+  add_material(scene, glossy("blue", {0.25F, 0.35F, 0.70F}, 0.1F));
+  const Scene teapot = make_teapot(values.integer("tessellation"));
+  const glm::dvec3 step = glm::dvec3(8.0, 4.5, 7.0) * values.real("spread");
+  for (int number = 0; number < kAcross * kAcross * kFloors; ++number) {
+    const int x = number % kAcross;
+    const int z = number / kAcross % kAcross;
+    const int y = number / (kAcross * kAcross);
+    Placement placement;
+    placement.matrix = glm::translate(glm::dmat4(1.0), step * glm::dvec3(x - 1, y, z - 1));
+    placement.matrix =
+        glm::rotate(placement.matrix, glm::radians(40.0 * number), glm::dvec3(0.0, 1.0, 0.0));
+    placement.material = static_cast<std::uint32_t>(number % kColours);
+    // The options keep everything within float32 and the number of triangles.
+    static_cast<void>(append_scene(scene, teapot, placement, "teapots"));
+  }
+  if (const double far = values.real("stray"); far > 0.0) {
+    const std::uint32_t a = add_vertex(scene, {far, 0.0, 0.0});
+    add_vertex(scene, {far, 1.0, 0.0});
+    add_vertex(scene, {far, 0.0, 1.0});
+    add_triangle(scene, {a, a + 1, a + 2});
+  }
+  return scene;
+}
+
+// A bowl of steps around a teapot that is small against it.
+Scene make_stadium(const BuiltinValues& values) {
+  constexpr std::uint32_t kSides = 24;
+  constexpr std::uint32_t kSteps = 8;
+  Scene scene;
+  const std::uint32_t concrete = add_material(scene, matte("concrete", glm::vec3(0.6F)));
+  const std::uint32_t china = add_material(scene, glossy("china", {0.8F, 0.3F, 0.2F}, 0.1F));
+  const auto corner = [&](std::uint32_t side, double radius, double height) {
+    const double angle = 2.0 * std::numbers::pi * (side % kSides) / kSides;
+    return glm::dvec3(radius * std::cos(angle), height, -radius * std::sin(angle));
+  };
+  for (std::uint32_t side = 0; side < kSides; ++side) {
+    for (std::uint32_t step = 0; step < kSteps; ++step) {
+      const double inner = 0.4 + 0.6 * step / kSteps;
+      const double outer = 0.4 + 0.6 * (step + 1) / kSteps;
+      const double low = 0.3 * step / kSteps;
+      const double high = 0.3 * (step + 1) / kSteps;
+      add_quad(scene,
+               {corner(side, inner, low), corner(side + 1, inner, low),
+                corner(side + 1, inner, high), corner(side, inner, high)},
+               concrete);
+      add_quad(scene,
+               {corner(side, inner, high), corner(side + 1, inner, high),
+                corner(side + 1, outer, high), corner(side, outer, high)},
+               concrete);
+    }
+  }
+  add_quad(scene, {{{-1.0, 0.0, 1.0}, {1.0, 0.0, 1.0}, {1.0, 0.0, -1.0}, {-1.0, 0.0, -1.0}}},
+           concrete);
+  const double size = values.real("ratio");
+  constexpr double kTeapotWidth = 6.525;
+  Placement placement;
+  placement.matrix = glm::scale(glm::dmat4(1.0), glm::dvec3(2.0 * size / kTeapotWidth));
+  placement.material = china;
+  static_cast<void>(
+      append_scene(scene, make_teapot(values.integer("tessellation")), placement, "stadium"));
+  scene.camera =
+      Camera{glm::dvec3(1.5, 1.5, 4.0) * size, {0.0, 0.4 * size, 0.0}, {0.0, 1.0, 0.0}, 40.0};
+  return scene;
+}
+
 }  // namespace
 
 Scene make_teapot(std::uint32_t tessellation) {
@@ -120,6 +197,17 @@ std::vector<Builtin> teapot_builtins() {
       2000,           "cuts of each side of a patch: 64 n^2 - 8 n triangles"};
   return {
       {"teapot", "Newell's teapot, smooth", {tessellation}, make_single},
+      {"teapots",
+       "eighteen teapots, three by three on two floors",
+       {tessellation,
+        {"spread", kReal, "1", 0.1, 1e6, "distance between them; 1000 makes distant clusters"},
+        {"stray", kReal, "0", 0.0, 1e30, "x of a single triangle far away; 0: none"}},
+       make_eighteen},
+      {"stadium",
+       "a teapot in a stadium that is 10,000 times as wide",
+       {{"tessellation", kInteger, "16", 1, 400, "of the teapot: 64 n^2 - 8 n triangles"},
+        {"ratio", kReal, "0.0001", 1e-9, 1, "width of the teapot over that of the stadium"}},
+       make_stadium},
   };
 }
 

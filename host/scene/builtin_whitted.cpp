@@ -1,6 +1,5 @@
 // Built-in scenes that show what Whitted's ray tracing can: mirror, glass, shadows.
 #include <cstddef>
-#include <utility>
 
 #include <glm/ext/matrix_transform.hpp>
 #include <glm/mat4x4.hpp>
@@ -8,50 +7,10 @@
 
 #include "host/scene/assemble.hpp"
 #include "host/scene/builtin.hpp"
+#include "host/scene/builtin_looks.hpp"
 
 namespace gridrt::scene_detail {
 namespace {
-
-Material matte(const char* name, const glm::vec3& colour) {
-  Material m;
-  m.name = name;
-  m.ambient = colour * 0.15F;
-  m.diffuse = colour;
-  return m;
-}
-
-Material glossy(const char* name, const glm::vec3& colour, float mirror) {
-  Material m = matte(name, colour * (1.0F - mirror));
-  m.specular = glm::vec3(0.5F);
-  m.shininess = 60.0F;
-  m.mirror = glm::vec3(mirror);
-  return m;
-}
-
-Material mirror_of(const glm::vec3& tint) {
-  Material m = matte("mirror", tint * 0.05F);
-  m.specular = glm::vec3(0.8F);
-  m.shininess = 200.0F;
-  m.mirror = tint * 0.9F;
-  return m;
-}
-
-Material glass_of(float ior) {
-  Material m = matte("glass", glm::vec3(0.0F));
-  m.specular = glm::vec3(0.8F);
-  m.shininess = 200.0F;
-  m.mirror = glm::vec3(0.08F);
-  m.transmission = glm::vec3(0.9F, 0.95F, 0.92F);
-  m.ior = ior;
-  return m;
-}
-
-Light lamp(const glm::dvec3& position, float intensity) {
-  Light light;
-  light.position = position;
-  light.colour = glm::vec3(intensity);
-  return light;
-}
 
 // A floor of squares in the plane y = 0; neighbours share no vertices but have equal ones.
 void add_checker(Scene& scene, double half, int squares, std::uint32_t light, std::uint32_t dark) {
@@ -98,6 +57,24 @@ Scene make_demo(const BuiltinValues& values) {
   return scene;
 }
 
+// After the picture in T. Whitted, "An Improved Illumination Model for Shaded Display", 1980: a
+// glass ball before a mirror ball over a chequered floor.
+Scene make_whitted(const BuiltinValues& values) {
+  Scene scene;
+  const std::uint32_t yellow = add_material(scene, matte("yellow", {0.90F, 0.85F, 0.20F}));
+  const std::uint32_t red = add_material(scene, matte("red", {0.80F, 0.10F, 0.10F}));
+  const std::uint32_t mirror = add_material(scene, mirror_of(glm::vec3(0.9F)));
+  const std::uint32_t glass = add_material(scene, glass_of(static_cast<float>(values.real("ior"))));
+  const std::uint32_t balls = values.integer("subdivisions");
+  add_checker(scene, 8.0, 16, yellow, red);
+  add_icosphere(scene, {-0.4, 1.6, 1.6}, 0.9, balls, glass, true);
+  add_icosphere(scene, {1.2, 1.1, -0.9}, 1.0, balls, mirror, true);
+  scene.lights = {lamp({-4.0, 9.0, 5.0}, 0.9F)};
+  scene.background = glm::vec3(0.25F, 0.45F, 0.75F);
+  scene.camera = Camera{{0.0, 2.0, 8.0}, {0.2, 1.2, 0.0}, {0.0, 1.0, 0.0}, 36.0};
+  return scene;
+}
+
 }  // namespace
 
 std::vector<Builtin> whitted_builtins() {
@@ -108,6 +85,11 @@ std::vector<Builtin> whitted_builtins() {
        {{"tessellation", kInteger, "8", 1, 500, "of the teapot"},
         {"subdivisions", kInteger, "3", 0, 8, "of the balls: 20 * 4^n triangles each"}},
        make_demo},
+      {"whitted",
+       "a glass ball before a mirror ball over a chequered floor",
+       {{"subdivisions", kInteger, "4", 0, 8, "of the balls: 20 * 4^n triangles each"},
+        {"ior", kReal, "1.5", 0.1, 10, "index of refraction of the glass"}},
+       make_whitted},
   };
 }
 

@@ -104,7 +104,6 @@ Material gltf_material(const JsonNode& node) {
     return m;
   }
   const double r = f.roughness;
-  const double f0 = std::pow((f.ior - 1.0) / (f.ior + 1.0), 2.0);
   const glm::dvec3 body = f.base * (1.0 - f.metallic) * (1.0 - f.transmission);
   m.diffuse = rounded(body);
   m.ambient = rounded(glm::mix(body, f.base, f.metallic) * kAmbientShare);
@@ -112,8 +111,7 @@ Material gltf_material(const JsonNode& node) {
   m.shininess = static_cast<float>(
       std::clamp(2.0 / std::max(std::pow(r, 4.0), 1e-9) - 2.0, 1.0, kLargestExponent));
   if (r < kMirrorBelow) {
-    m.mirror = rounded(glm::mix(glm::dvec3(f.transmission * f0), f.base, f.metallic) * (1.0 - r) *
-                       (1.0 - r));
+    m.mirror = rounded(f.base * f.metallic * (1.0 - r) * (1.0 - r));
   }
   m.transmission = rounded(f.base * f.transmission * (1.0 - f.metallic));
   m.ior = static_cast<float>(f.ior);

@@ -10,9 +10,9 @@ namespace gridrt::scene_detail {
 
 /// The Phong material nearest to a glTF material's factors (textures are not read). With base
 /// colour c, metalness m, roughness r and transmission t: diffuse c (1 - m)(1 - t), specular a
-/// blend of 0.5 (1 - r) and c by m, exponent 2 / r^4 - 2 in [1, 10^4], and below r = 0.5 a mirror
-/// of (1 - r)^2 times a blend of t F0 and c by m, F0 = ((n - 1) / (n + 1))^2 (Schlick). Alpha below
-/// 1 in a blended material lets 1 - alpha through unbent.
+/// blend of 0.5 (1 - r) and c by m, exponent 2 / r^4 - 2 in [1, 10^4], mirror c m (1 - r)^2 below
+/// r = 0.5, transmission c t (1 - m). Alpha below 1 in a blended material lets 1 - alpha through
+/// unbent.
 Material gltf_material(const JsonNode& node);
 
 /// True if any member of the material refers to a texture.

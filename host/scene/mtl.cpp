@@ -55,11 +55,11 @@ Material meaning_of(const Entry& entry) {
   if (model == 1) {
     m.specular = glm::vec3(0.0F);
   }
-  if (model == 3 || model == 5 || (glass && model != 9)) {
+  if (model == 3 || model == 5) {
     m.mirror = entry.specular;
   }
   if (glass) {
-    m.transmission = (glm::vec3(1.0F) - entry.specular) * entry.filter;
+    m.transmission = entry.filter;
   } else if (entry.opacity < 1.0F) {
     m.transmission = entry.filter * (1.0F - entry.opacity);
     m.ior = 1.0F;
