@@ -52,13 +52,16 @@ Accepted<Pe> Pe::decode(const protocol::ImageHeader& header, std::uint8_t number
     }
   }
   Pe pe;
+  pe.narrow_ = header.bits <= kMaxCompactBits;
   pe.triangles_.resize(triangles.size() / triangle_codec.stride());
   for (std::size_t i = 0; i < pe.triangles_.size(); ++i) {
     const protocol::TriangleRecord record = triangle_codec.at(triangles, i);
+    LatticeTriangle triangle;
     for (std::size_t c = 0; c < 3; ++c) {
       if (record.vertex[c] >= corners.size()) return bad(SectionKind::kTriangles);
-      pe.triangles_[i].corners.v[c] = corners[record.vertex[c]];
+      triangle.v[c] = corners[record.vertex[c]];
     }
+    pe.triangles_[i].edges = EdgeTriangle(triangle);
     if (record.id >= header.local_ids) return bad(SectionKind::kTriangles);
     pe.triangles_[i].id = record.id;
   }
@@ -71,8 +74,16 @@ Accepted<Pe> Pe::decode(const protocol::ImageHeader& header, std::uint8_t number
   return pe;
 }
 
+std::optional<ExactHit> Pe::intersect(const PeRay& ray, const glm::ivec3& d,
+                                      const Triangle& triangle) const {
+  const EdgeTriangle& e = triangle.edges;
+  if (narrow_) return intersect_narrow(ray.p0, d, e);
+  return intersect_exact(ray.p0, ray.p1, {{e.v0, e.v0 + e.e1, e.v0 + e.e2}});
+}
+
 void Pe::test(const PeRay& ray, std::uint32_t first, std::uint32_t count, HalfMask halves,
               HitKey& best, PeCounters& counters, PeObserver* observer) const {
+  const glm::ivec3 d = ray.p1 - ray.p0;
   for (const VoxelReference& reference : std::span(references_).subspan(first, count)) {
     const Triangle& triangle = triangles_[reference.triangle];
     if (!share_halves(reference.mask, halves)) {
@@ -82,7 +93,7 @@ void Pe::test(const PeRay& ray, std::uint32_t first, std::uint32_t count, HalfMa
     }
     if (triangle.id == ray.ignore) continue;
     ++counters.tests;
-    const std::optional<ExactHit> hit = intersect_exact(ray.p0, ray.p1, triangle.corners);
+    const std::optional<ExactHit> hit = intersect(ray, d, triangle);
     std::optional<HitKey> key;
     if (hit) {
       key = HitKey{hit_quotient(*hit), triangle.id};
@@ -94,6 +105,7 @@ void Pe::test(const PeRay& ray, std::uint32_t first, std::uint32_t count, HalfMa
 
 bool Pe::test_any(const PeRay& ray, std::uint32_t first, std::uint32_t count, HalfMask halves,
                   PeCounters& counters) const {
+  const glm::ivec3 d = ray.p1 - ray.p0;
   for (const VoxelReference& reference : std::span(references_).subspan(first, count)) {
     const Triangle& triangle = triangles_[reference.triangle];
     if (!share_halves(reference.mask, halves)) {
@@ -102,7 +114,7 @@ bool Pe::test_any(const PeRay& ray, std::uint32_t first, std::uint32_t count, Ha
     }
     if (triangle.id == ray.ignore) continue;
     ++counters.tests;
-    if (intersect_exact(ray.p0, ray.p1, triangle.corners)) return true;
+    if (intersect(ray, d, triangle)) return true;
   }
   return false;
 }

@@ -7,6 +7,7 @@
 
 #include "gridrt_protocol.hpp"
 #include "host/grid/intersect.hpp"
+#include "host/grid/intersect_narrow.hpp"
 #include "host/grid/voxel_grid.hpp"
 #include "host/pe/refusal.hpp"
 
@@ -62,9 +63,13 @@ class Pe {
 
  private:
   struct Triangle {
-    LatticeTriangle corners;
+    EdgeTriangle edges;
     std::uint32_t id;
   };
+  [[nodiscard]] std::optional<ExactHit> intersect(const PeRay& ray, const glm::ivec3& d,
+                                                  const Triangle& triangle) const;
+
+  bool narrow_ = true;  ///< 64 bits hold every product
   std::vector<VoxelReference> references_;
   std::vector<Triangle> triangles_;
 };
