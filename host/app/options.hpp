@@ -39,7 +39,7 @@ struct HostOptions {
   std::string schedule = "rays";
   bool list_devices = false;
   int threads = 0;           ///< 0: one a core
-  std::size_t batch = 8192;  ///< rays a frame
+  std::size_t batch = 32768;  ///< rays a frame
   CutOptions cut;
   bool exact = false;
 

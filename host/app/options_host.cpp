@@ -81,7 +81,7 @@ void add_options(CLI::App& app, HostOptions& options, HostTexts& texts) {
   add(kDevice, "--schedule", options.schedule, "NAME",
       "of software PEs: rays (default), pes or paper");
   add(kDevice, "--threads", texts.threads, "N", "threads of omp and of the shading (default: all)");
-  add(kDevice, "--batch", texts.batch, "N", "rays in a frame to the device (default 8192)");
+  add(kDevice, "--batch", texts.batch, "N", "rays in a frame to the device (default 32768)");
   app.add_flag("--list-devices", options.list_devices, "list the devices that there are")
       ->group(kDevice);
   add_cut_options(app, texts.cut);
