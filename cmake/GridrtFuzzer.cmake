@@ -1,0 +1,27 @@
+# Fuzz targets (libFuzzer): all libraries are built with coverage and with address and
+# undefined-behaviour sanitizers.
+if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+  message(FATAL_ERROR "GRIDRT_BUILD_FUZZERS needs clang: -DCMAKE_CXX_COMPILER=clang++-19")
+endif()
+if(NOT TARGET gridrt_fuzzing)
+  add_library(gridrt_fuzzing INTERFACE)
+  target_compile_options(gridrt_flags INTERFACE
+    -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(gridrt_fuzzing INTERFACE -fsanitize=fuzzer,address,undefined)
+endif()
+
+set(GRIDRT_FUZZ_RUNS 20000 CACHE STRING "Inputs of each fuzz target's test")
+
+# gridrt_fuzzer(NAME sources... LINK libraries... [LENGTH most bytes of an input])
+# The test fuzz.NAME runs GRIDRT_FUZZ_RUNS inputs from a fixed seed.
+function(gridrt_fuzzer name)
+  cmake_parse_arguments(ARG "" "LENGTH" "LINK" ${ARGN})
+  if(NOT ARG_LENGTH)
+    set(ARG_LENGTH 4096)
+  endif()
+  add_executable(${name} ${ARG_UNPARSED_ARGUMENTS})
+  target_link_libraries(${name} PRIVATE gridrt_flags gridrt_fuzzing ${ARG_LINK})
+  add_test(NAME fuzz.${name}
+    COMMAND ${name} -seed=1 -runs=${GRIDRT_FUZZ_RUNS} -max_len=${ARG_LENGTH}
+            -rss_limit_mb=4096 -timeout=20 -print_final_stats=1)
+endfunction()
