@@ -15,8 +15,6 @@
 namespace gridrt {
 namespace {
 
-constexpr std::size_t kMaxRaysOfSample = std::size_t{1} << 24U;
-
 /// A ray of a wave, and where its light goes.
 struct Path {
   Ray ray;
@@ -118,12 +116,16 @@ Result<void> WaveTracer::run(Wave wave, int depth, const PrimarySink& sink) {
   // Cut between samples only, so that the order of a sample's sums never depends on the cut.
   for (std::size_t first = 0; first < next.size();) {
     std::size_t last = std::min(next.size(), first + options_.wave_rays);
-    while (last < next.size() && next[last].sample == next[last - 1].sample) ++last;
-    if (last - first > kMaxRaysOfSample + options_.wave_rays) {
-      return fail(
-          ErrorKind::kLimit,
-          fmt::format("a single pixel sample needs {} rays of depth {}", last - first, depth + 1),
-          "use a smaller --depth: mirror and glass double the rays at every bounce");
+    std::size_t last_sample = last - 1;  // where the last sample begins
+    while (last < next.size() && next[last].sample == next[last_sample].sample) ++last;
+    while (last_sample > first && next[last_sample - 1].sample == next[last_sample].sample) {
+      --last_sample;
+    }
+    if (last - last_sample > options_.sample_rays) {
+      return fail(ErrorKind::kLimit,
+                  fmt::format("a single pixel sample needs {} rays of depth {}", last - last_sample,
+                              depth + 1),
+                  "use a smaller --depth: mirror and glass double the rays at every bounce");
     }
     if (first == 0 && last == next.size()) return run(std::move(next), depth + 1, sink);
     const auto begin = next.begin();

@@ -27,6 +27,8 @@ struct RenderOptions {
   int threads = 0;   ///< that shade; 0: one a core
   /// Rays of a wave: bounds memory to some 500 bytes times this times the depth that is reached.
   std::size_t wave_rays = std::size_t{1} << 17U;
+  /// Most rays that one pixel sample may need at one depth.
+  std::size_t sample_rays = std::size_t{1} << 22U;
 };
 
 /// Rays by kind, and the time that they took.
@@ -59,7 +61,7 @@ struct RenderInput {
 
 /// Renders. The film depends on the input, and of the options on size, samples and
 /// depth; no device, thread or wave size changes a bit of it. Errors: kUsage for options out
-/// of range, kLimit where one pixel sample needs more than 2^24 rays of one depth, those of the
+/// of range, kLimit where one pixel sample needs more than `sample_rays`, those of the
 /// device, kDevice for answers that name no triangle, and those of the sink.
 Result<Film> render(const RenderInput& input, const RenderOptions& options, Device& device,
                     RenderReport& report, const PrimarySink& primary_sink = {},
