@@ -84,14 +84,15 @@ Result<void> set_option(BuiltinValues& values, const BuiltinOption& option, std:
     return {};
   }
   glm::dvec3 vector(0.0);
+  std::string_view rest = text;
   for (int i = 0; i < 3; ++i) {
-    const std::size_t comma = text.find(',');
-    const auto number = number_in_range(option, text.substr(0, comma));
+    const std::size_t comma = rest.find(',');
+    const auto number = number_in_range(option, rest.substr(0, comma));
     if (!number || (comma == std::string_view::npos) != (i == 2)) {
       return wrong(fmt::format("give three numbers x,y,z {}", range));
     }
     vector[i] = *number;
-    text.remove_prefix(i == 2 ? text.size() : comma + 1);
+    rest.remove_prefix(i == 2 ? rest.size() : comma + 1);
   }
   values.set(option.name, vector);
   return {};

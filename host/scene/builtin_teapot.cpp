@@ -191,10 +191,12 @@ Scene make_teapot(std::uint32_t tessellation) {
 
 std::vector<Builtin> teapot_builtins() {
   using enum OptionKind;
-  const BuiltinOption tessellation{
-      "tessellation", kInteger,
-      "10",           1,
-      2000,           "cuts of each side of a patch: 64 n^2 - 8 n triangles"};
+  const BuiltinOption tessellation{"tessellation",
+                                   kInteger,
+                                   "10",
+                                   1,
+                                   400,
+                                   "cuts of each side of a patch: 64 n^2 - 8 n triangles"};
   return {
       {"teapot", "Newell's teapot, smooth", {tessellation}, make_single},
       {"teapots",

@@ -159,11 +159,12 @@ class HeaderReader {
       --header_.body_from;
     }
     const std::uint64_t body = bytes_.size() - header_.body_from;
+    // The last line of a text needs no end, which counts as a byte of its least size.
+    const std::uint64_t room = body + (header_.encoding == PlyEncoding::kAscii ? 1 : 0);
     std::uint64_t needed = 0;
     for (const PlyElement& element : header_.elements) {
       const std::uint64_t least = element.least_bytes(header_.encoding);
-      // The last line of a text needs no end: one byte less.
-      const std::uint64_t left = body + 1 - std::min(needed, body + 1);
+      const std::uint64_t left = room - std::min(needed, room);
       if (least > 0 && element.count > left / least) {
         return fail(ErrorKind::kInput,
                     fmt::format("{}: {} elements '{}' of at least {} bytes are announced, but only "
