@@ -5,6 +5,14 @@
 #include <numeric>
 
 namespace gridrt::truth {
+namespace {
+
+/// Three times the middle of the corners.
+std::int64_t centre(const Triangle& t, std::size_t axis) {
+  return static_cast<std::int64_t>(t.a[axis]) + t.b[axis] + t.c[axis];
+}
+
+}  // namespace
 
 BoxTree::BoxTree(std::span<const Triangle> triangles) : order_(triangles.size()) {
   if (triangles.empty()) return;
@@ -31,18 +39,31 @@ void BoxTree::split(std::uint32_t node, std::uint32_t begin, std::uint32_t end,
     nodes_[node].count = end - begin;
     return;
   }
-  // Halves by the middle of the longest axis, as many triangles on each side.
+  // Halves with as many triangles each, along the axis whose centres spread farthest for the size
+  // of the triangles there: the one that leaves the least overlap.
   std::size_t axis = 0;
-  for (std::size_t i = 1; i < 3; ++i) {
-    if (hi[i] - lo[i] > hi[axis] - lo[axis]) axis = i;
+  double best = -1.0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    double size = 1.0;
+    double low = static_cast<double>(centre(triangles[order_[begin]], i));
+    double high = low;
+    for (std::uint32_t k = begin; k < end; ++k) {
+      const Triangle& t = triangles[order_[k]];
+      const auto [least, most] = std::minmax({t.a[i], t.b[i], t.c[i]});
+      size += most - least;
+      low = std::min(low, static_cast<double>(centre(t, i)));
+      high = std::max(high, static_cast<double>(centre(t, i)));
+    }
+    if ((high - low) / size > best) {
+      best = (high - low) / size;
+      axis = i;
+    }
   }
-  const auto centre = [&](std::uint32_t id) {
-    const Triangle& t = triangles[id];
-    return static_cast<std::int64_t>(t.a[axis]) + t.b[axis] + t.c[axis];
-  };
   const std::uint32_t middle = begin + (end - begin) / 2;
   std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end,
-                   [&](std::uint32_t x, std::uint32_t y) { return centre(x) < centre(y); });
+                   [&](std::uint32_t x, std::uint32_t y) {
+                     return centre(triangles[x], axis) < centre(triangles[y], axis);
+                   });
   const auto first = static_cast<std::uint32_t>(nodes_.size());
   nodes_[node].first = first;
   nodes_.resize(nodes_.size() + 2);
