@@ -1,0 +1,53 @@
+// What every contract test starts from: the device's name, a scene with all that is awkward, rays
+// of all kinds, and the answers of seq.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "host/driver/device.hpp"
+#include "host/image/image.hpp"
+
+namespace gridrt::contract {
+
+/// A few hundred triangles: closed, sliver, coplanar, duplicate and degenerate ones.
+Scene awkward_scene(std::uint64_t seed);
+
+/// Segments of every kind on the scene's lattice; some ignore a triangle, some are misses by
+/// definition. GRIDRT_CONTRACT_RAYS (default 1500) is how many, for devices that are slow.
+std::vector<Segment> awkward_segments(const Scene& scene, int bits, std::uint64_t seed);
+
+/// Bit for bit, NaN included.
+bool same(const Hit& a, const Hit& b);
+
+/// Image options without the scene section.
+ImageOptions plain(int bits = kDefaultBits, int pes = 4);
+
+/// Traces all segments; a failure fails the test.
+std::vector<Hit> trace(Device& device, std::span<const Segment> segments, Query query);
+
+/// The answers of seq with one PE, default grid and batch.
+std::vector<Hit> reference(const Scene& scene, int bits, std::span<const Segment> segments,
+                           Query query);
+
+/// A test of one device.
+class Contract : public testing::TestWithParam<std::string> {
+ protected:
+  /// The device under test; a failure fails the test.
+  static std::unique_ptr<Device> open(DeviceOptions options = {});
+
+  /// Opens, loads and traces. Nothing where the device does not take such an image (kUnsupported
+  /// or kLimit, refused before anything is sent); `refused` says why.
+  static std::vector<Hit> answers(const DeviceOptions& options, const Image& image,
+                                  std::span<const Segment> segments, Query query,
+                                  std::string& refused);
+};
+
+/// Expects the same bits; the message names the first ray that differs.
+void expect_same(std::span<const Hit> got, std::span<const Hit> expected, const std::string& what);
+
+}  // namespace gridrt::contract
