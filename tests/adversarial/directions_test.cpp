@@ -1,6 +1,7 @@
 // Cases 13 to 16 and 20: special directions, origins and lengths, and triangles in cell faces.
 #include <algorithm>
 #include <cmath>
+
 #include <glm/common.hpp>
 
 #include "tests/adversarial/bridge.hpp"
