@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 #include <png.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "host/render/output_file.hpp"
 #include "host/render/picture.hpp"
