@@ -110,7 +110,7 @@ void FrameReader::skip(std::size_t bytes) {
   garbage_bytes_ += bytes;
 }
 
-bool FrameReader::find_header() {
+std::optional<protocol::FrameHeader> FrameReader::find_header() {
   while (true) {
     // Skip to the next place where the magic, or as much of it as has come, stands.
     const std::span<const std::byte> bytes = pending();
@@ -126,14 +126,13 @@ bool FrameReader::find_header() {
     }
     skip(at);
     if (pending().size() < FrameHeader::kBytes) {
-      return false;
+      return std::nullopt;
     }
     const std::span<const std::byte> raw = pending().first(FrameHeader::kBytes);
     const FrameHeader header = protocol::load_frame_header(raw.first<FrameHeader::kBytes>());
     if (header.header_crc == crc32c(raw.first(kCrcOffset)) && header.flags == 0 &&
         header.length % 4 == 0 && header.length <= max_payload_) {
-      header_ = header;
-      return true;
+      return header;
     }
     ++bad_frames_;
     skip(1);
@@ -141,7 +140,10 @@ bool FrameReader::find_header() {
 }
 
 std::optional<FrameEvent> FrameReader::next() {
-  if (!header_ && !find_header()) {
+  if (!header_) {
+    header_ = find_header();
+  }
+  if (!header_) {
     return std::nullopt;
   }
   const FrameHeader header = *header_;

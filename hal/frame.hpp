@@ -106,7 +106,7 @@ class FrameReader {
 
  private:
   [[nodiscard]] std::span<const std::byte> pending() const;
-  bool find_header();
+  std::optional<protocol::FrameHeader> find_header();
   void skip(std::size_t bytes);
 
   std::uint32_t max_payload_;

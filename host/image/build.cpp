@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kMostTriangles = 0x7FFFFFFFU;  ///< global ids are int32 in results
 constexpr double kDensity = 4.0;                     ///< voxels a triangle
 constexpr double kCoarser = 0.75;                    ///< from one try to the next
-constexpr double kCoarsest = 1.0 / 1024.0;
+constexpr int kTries = 30;                           ///< down to 1 voxel for 1,000 triangles
 
 /// Snaps the scene and leaves out degenerate triangles.
 LocalTriangles make_local(const Scene& scene, const Lattice& lattice) {
@@ -52,7 +52,8 @@ Result<Image> build_with_grid(const LocalTriangles& local, Cut cut, const VoxelG
 /// chosen grid can exceed.
 Result<Image> build_with_chosen_grid(const LocalTriangles& local, const Cut& cut) {
   Result<Image> image = fail(ErrorKind::kInternal, "no grid was tried");
-  for (double density = kDensity; density > kCoarsest; density *= kCoarser) {
+  double density = kDensity;
+  for (int i = 0; i < kTries; ++i, density *= kCoarser) {
     const auto grid = make_grid(cut.lattice, local.triangles.size(), std::nullopt, density);
     if (!grid) return std::unexpected(grid.error());
     image = build_with_grid(local, cut, *grid);

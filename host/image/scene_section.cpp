@@ -158,7 +158,8 @@ Result<void> check_shading(const Scene& s) {
     if (!finite(c.eye) || !finite(c.look) || !finite(c.up)) {
       return bad("camera: a number is not finite");
     }
-    if (!(c.fov_degrees > 0.0 && c.fov_degrees < 180.0)) {
+    const bool valid = c.fov_degrees > 0.0 && c.fov_degrees < 180.0;
+    if (!valid) {
       return bad(fmt::format("camera: field of view {}", c.fov_degrees));
     }
   }
