@@ -11,6 +11,7 @@
 #include "host/app/prepared_scene.hpp"
 #include "host/app/progress.hpp"
 #include "host/image/image_file.hpp"
+#include "host/render/output_file.hpp"
 #include "host/scene/load.hpp"
 
 namespace gridrt {
@@ -30,6 +31,8 @@ Result<void> make(const ImageProgramOptions& options) {
     return fail(ErrorKind::kUsage, options.scene + " is an image already",
                 "make it anew from the scene that it was made from");
   }
+  auto file = OutputFile::create(options.output);  // first: a bad place is no surprise at the end
+  if (!file) return std::unexpected(file.error());
   Progress progress(options.progress);
   progress.phase("loading");
   auto scene = load_scene(options.scene);
@@ -40,7 +43,8 @@ Result<void> make(const ImageProgramOptions& options) {
   auto image = build_image(*scene, image_options(options.cut, true));
   if (!image) return std::unexpected(image.error());
   progress.phase("writing");
-  return write_image(*image, options.output);
+  if (auto done = file->write(serialize_image(*image)); !done) return done;
+  return file->commit();
 }
 
 Result<void> verify(const std::string& path) {
