@@ -9,12 +9,12 @@
 #include <glm/ext/matrix_transform.hpp>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
-#include <toml++/toml.h>
 
 #include "host/scene/assemble.hpp"
 #include "host/scene/readers.hpp"
 #include "host/scene/refuse.hpp"
 #include "host/scene/text.hpp"
+#include "host/scene/toml_library.hpp"
 #include "host/scene/toml_value.hpp"
 
 namespace gridrt::scene_detail {

@@ -6,10 +6,10 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <toml++/toml.h>
 
 #include "host/scene/refuse.hpp"
 #include "host/scene/text.hpp"
+#include "host/scene/toml_library.hpp"
 
 namespace gridrt::scene_detail {
 

@@ -1,0 +1,7 @@
+// The PLY reader on any bytes.
+#include "scene_fuzz_support.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  gridrt::scene_fuzz::read(gridrt::SceneFormat::kPly, gridrt::scene_fuzz::text_of(data, size));
+  return 0;
+}
