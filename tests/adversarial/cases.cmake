@@ -8,7 +8,8 @@ target_link_libraries(gridrt_bench PUBLIC gridrt_adversarial gridrt_driver
 function(gridrt_cases name)
   add_executable(adversarial_${name} ${ARGN})
   target_link_libraries(adversarial_${name} PRIVATE gridrt_bench gridrt_flags GTest::gtest_main)
-  gtest_discover_tests(adversarial_${name} DISCOVERY_TIMEOUT 60)
+  gtest_discover_tests(adversarial_${name} DISCOVERY_TIMEOUT 60
+                       PROPERTIES LABELS adversarial TIMEOUT 900)
 endfunction()
 
 gridrt_cases(sheets sheets_test.cpp)
@@ -23,3 +24,12 @@ target_compile_definitions(adversarial_uneven
 gridrt_cases(secondary secondary_test.cpp walk.cpp)
 gridrt_cases(skip skip_test.cpp)
 target_link_libraries(adversarial_skip PRIVATE gridrt_pe gridrt_image)
+
+# The long run (tools/truth-run), and a short one so that it never rots.
+find_package(CLI11 REQUIRED)
+find_package(Threads REQUIRED)
+add_executable(truth-run truth_run.cpp walk.cpp)
+target_link_libraries(truth-run PRIVATE gridrt_bench gridrt_scene gridrt_flags fmt::fmt
+                      CLI11::CLI11 Threads::Threads)
+add_test(NAME truth_run_short COMMAND truth-run --rays 200000)
+set_tests_properties(truth_run_short PROPERTIES LABELS adversarial TIMEOUT 900)
