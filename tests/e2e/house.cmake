@@ -15,6 +15,11 @@ house_test(package ${Python3_EXECUTABLE} tests/e2e/package_test.py
 # The rest speaks of the tools and the build tree that tools/test has prepared.
 if(PROJECT_BINARY_DIR STREQUAL "${PROJECT_SOURCE_DIR}/build")
   house_test(demo ${Python3_EXECUTABLE} tests/e2e/demo_test.py)
+  # Unit tests and short runs of the fuzzers under sanitizers (cmake --build --preset fuzz).
+  add_test(NAME sanitized COMMAND
+    ${CMAKE_CTEST_COMMAND} --test-dir ${PROJECT_SOURCE_DIR}/build-fuzz --no-tests=error
+    --output-on-failure --parallel 2 --label-regex "^(unit|fuzz)$" --exclude-regex ^audit$)
+  set_tests_properties(sanitized PROPERTIES LABELS sanitized TIMEOUT 1200 PROCESSORS 2)
 endif()
 house_test(format ${Python3_EXECUTABLE} tools/lint format)
 house_test(tidy ${Python3_EXECUTABLE} tools/lint --build ${PROJECT_BINARY_DIR} tidy)
