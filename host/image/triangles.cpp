@@ -13,7 +13,7 @@ namespace {
 using protocol::SectionKind;
 
 /// No section bounds this number of the header, so something else has to.
-constexpr std::uint32_t kMostDegenerate = 1U << 26;
+constexpr std::uint32_t kMostDegenerate = 1U << 24;
 
 std::unexpected<Error> bad(SectionKind kind, int pe, std::string_view message) {
   return fail(ErrorKind::kInput, fmt::format("{}: {}", section_name(kind, pe), message));
@@ -151,13 +151,13 @@ namespace {
 
 /// A scene of the lattice's own vertices: degenerate triangles are points at the origin's vertex.
 Result<Scene> lattice_scene(const Image& image) {
-  if (image.header.degenerate > kMostDegenerate) {
-    return fail(ErrorKind::kLimit,
-                fmt::format("{} degenerate triangles in an image without a scene",
-                            image.header.degenerate));
-  }
   const auto local = decode_triangles(image);
   if (!local) return std::unexpected(local.error());
+  const std::size_t degenerate = image.header.triangles - local->triangles.size();
+  if (degenerate > kMostDegenerate) {
+    return fail(ErrorKind::kLimit,
+                fmt::format("{} degenerate triangles in an image without a scene", degenerate));
+  }
   const Lattice lattice = image.lattice();
   Scene scene;
   scene.materials.emplace_back();
