@@ -7,6 +7,7 @@ import tempfile
 import unittest
 
 DEMO = pathlib.Path(__file__).resolve().parents[2] / "tools" / "demo"
+EXAMPLE = DEMO.parents[1] / "examples" / "scenes" / "table.toml"
 TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
 
 
@@ -38,6 +39,11 @@ class Demo(unittest.TestCase):
         (self.folder / "one triangle.obj").write_text(TRIANGLE, encoding="utf-8")
         statistics = self.check_outputs(run(self.folder, "one triangle.obj"), "one_triangle")
         self.assertEqual(statistics["triangles"], 1)
+
+    def test_renders_the_example_scene(self):
+        statistics = self.check_outputs(run(EXAMPLE.parent, EXAMPLE.name), "table")
+        for kind in ("primary", "shadow", "mirror", "refraction"):
+            self.assertGreater(statistics["rays"][kind], 0, kind)
 
     def test_passes_errors_through(self):
         missing = run(self.folder, "missing.obj")
