@@ -22,14 +22,14 @@ def main(arguments: list[str]) -> int:
         return 2
     try:
         protocol = read_protocol(Path(arguments[0]))
+        files = {
+            "gridrt_protocol.hpp": cpp_header(protocol),
+            "gridrt_protocol_pkg.sv": sv_package(protocol),
+            "protocol.md": document(protocol),
+        }
     except SourceError as error:
         print(f"generate.py: {error}", file=sys.stderr)
         return 1
-    files = {
-        "gridrt_protocol.hpp": cpp_header(protocol),
-        "gridrt_protocol_pkg.sv": sv_package(protocol),
-        "protocol.md": document(protocol),
-    }
     folder = Path(arguments[1])
     folder.mkdir(parents=True, exist_ok=True)
     for name, content in files.items():

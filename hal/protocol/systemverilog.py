@@ -4,7 +4,9 @@ Packed structs list the last field first, so that bit i of the vector is bit i o
 little-endian byte stream.
 """
 
-from model import Enum, Protocol, Record, Struct, snake
+import re
+
+from model import Enum, Protocol, Record, SourceError, Struct, snake
 
 # Keywords of IEEE 1800-2017 that could be field names; such a field gets a trailing underscore.
 SV_KEYWORDS = frozenset(
@@ -30,8 +32,11 @@ HEADER = """\
 // packed struct is bit i of the little-endian byte stream.
 package gridrt_protocol_pkg;
 
+  // A design uses the constants that it needs.
+  /* verilator lint_off UNUSEDPARAM */
+
 """
-FOOTER = "endpackage\n"
+FOOTER = "\n  /* verilator lint_on UNUSEDPARAM */\nendpackage\n"
 
 
 def field_name(name: str) -> str:
@@ -105,10 +110,23 @@ def sv_package(protocol: Protocol) -> str:
         out.append(parameter(c.name.upper(), c.value, c.doc))
     out.append("\n")
     for key, value in protocol.layout("Compact").values.items():
-        out.append(parameter(f"COMPACT_{key}".upper(), value))
+        out.append(parameter(f"LAYOUT_COMPACT_{key}".upper(), value))
     out.append("\n")
     out += [enum(e) for e in protocol.enums]
     out += [byte_struct(s) for s in protocol.structs]
     out += [record(protocol, r) for r in protocol.records]
     out += [byte_struct(r) for r in protocol.reports]
-    return "".join(out).rstrip("\n") + "\n" + FOOTER
+    package = "".join(out).rstrip("\n") + "\n" + FOOTER
+    check_names(package)
+    return package
+
+
+def check_names(package: str) -> None:
+    """All names of the package share one scope; two of the source may meet there."""
+    names = re.findall(r"^ +localparam int unsigned (\w+)|^    ([A-Z]\w*) =|^  } (\w+);", package,
+                       re.MULTILINE)
+    seen = set()
+    for name in ("".join(groups) for groups in names):
+        if name in seen:
+            raise SourceError(f"SystemVerilog would have two declarations of {name}")
+        seen.add(name)

@@ -13,10 +13,11 @@ find_package(Python3 3.11 REQUIRED COMPONENTS Interpreter)
 add_test(NAME unit_hal_generate
   COMMAND ${Python3_EXECUTABLE} -B ${CMAKE_CURRENT_LIST_DIR}/hal_generate.py)
 
-# The package for RTL has no warning, where there is a linter.
+# The package for RTL has no warning and lays out records as the C++ does, where there is a linter.
 find_program(GRIDRT_VERILATOR verilator)
 if(GRIDRT_VERILATOR)
   add_test(NAME unit_hal_systemverilog
     COMMAND ${GRIDRT_VERILATOR} --lint-only -Wall
-            ${PROJECT_BINARY_DIR}/generated/gridrt_protocol_pkg.sv)
+            ${PROJECT_BINARY_DIR}/generated/gridrt_protocol_pkg.sv
+            ${CMAKE_CURRENT_LIST_DIR}/hal_protocol_top.sv)
 endif()

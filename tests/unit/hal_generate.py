@@ -12,6 +12,7 @@ PROTOCOL = Path(__file__).resolve().parents[2] / "hal" / "protocol"
 sys.path.insert(0, str(PROTOCOL))
 
 import source  # noqa: E402
+import systemverilog  # noqa: E402
 from model import SourceError  # noqa: E402
 
 SOURCE = PROTOCOL / "protocol.toml"
@@ -181,6 +182,13 @@ class Mistakes(unittest.TestCase):
                 with self.assertRaises(SourceError) as caught:
                     source.build(tables)
                 self.assertIn(message, str(caught.exception))
+
+    def test_names_that_meet_in_rtl_are_refused(self):
+        protocol = source.build(mutated(lambda t: t["protocol"].update(
+            layout_compact_id_bits={"value": 1, "doc": "meets a layout's width"})))
+        with self.assertRaises(SourceError) as caught:
+            systemverilog.sv_package(protocol)
+        self.assertIn("two declarations of LAYOUT_COMPACT_ID_BITS", str(caught.exception))
 
 
 if __name__ == "__main__":
