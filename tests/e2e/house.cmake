@@ -3,7 +3,7 @@ find_package(Python3 3.11 REQUIRED COMPONENTS Interpreter)
 
 function(house_test name)
   add_test(NAME house.${name} COMMAND ${ARGN} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
-  set_tests_properties(house.${name} PROPERTIES LABELS house TIMEOUT 300)
+  set_tests_properties(house.${name} PROPERTIES LABELS house TIMEOUT 900)
 endfunction()
 
 house_test(arrows ${Python3_EXECUTABLE} tools/arrows)
@@ -19,7 +19,7 @@ if(PROJECT_BINARY_DIR STREQUAL "${PROJECT_SOURCE_DIR}/build")
   add_test(NAME sanitized COMMAND
     ${CMAKE_CTEST_COMMAND} --test-dir ${PROJECT_SOURCE_DIR}/build-fuzz --no-tests=error
     --output-on-failure --parallel 2 --label-regex "^(unit|fuzz)$" --exclude-regex ^audit$)
-  set_tests_properties(sanitized PROPERTIES LABELS sanitized TIMEOUT 1200 PROCESSORS 2)
+  set_tests_properties(sanitized PROPERTIES LABELS sanitized TIMEOUT 1800 PROCESSORS 2)
 endif()
 house_test(format ${Python3_EXECUTABLE} tools/lint format)
 house_test(tidy ${Python3_EXECUTABLE} tools/lint --build ${PROJECT_BINARY_DIR} tidy)
