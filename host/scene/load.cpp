@@ -6,7 +6,6 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <new>
 #include <stdexcept>
 #include <system_error>
@@ -33,12 +32,15 @@ Result<std::string> read_file(const std::filesystem::path& path) {
   if (!file) {
     return fail(ErrorKind::kFile, fmt::format("{}: {}", path.string(), std::strerror(errno)));
   }
+  // In pieces, since a pipe has no size to ask for.
+  constexpr std::size_t kPiece = std::size_t{1} << 20U;
   std::string bytes;
-  const auto size = std::filesystem::file_size(path, status);
-  if (!status) {
-    bytes.reserve(size);
+  while (file) {
+    const std::size_t held = bytes.size();
+    bytes.resize(held + kPiece);
+    file.read(bytes.data() + held, static_cast<std::streamsize>(kPiece));
+    bytes.resize(held + static_cast<std::size_t>(file.gcount()));
   }
-  bytes.assign(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
   if (file.bad()) {
     return fail(ErrorKind::kFile, fmt::format("{}: {}", path.string(), std::strerror(errno)));
   }
