@@ -42,6 +42,7 @@ struct RationalBox {
 
 bool meets(const LatticeTriangle& t, const RationalBox& box) {
   std::vector<Corner> polygon;
+  polygon.reserve(3);
   for (const auto& v : t.v) polygon.push_back({v.x, v.y, v.z});
   for (std::size_t axis = 0; axis < 3 && !polygon.empty(); ++axis) {
     polygon = keep(polygon, axis, box.lo[axis], 1);
@@ -88,6 +89,7 @@ void check_scene(const Scene& scene, int bits, const glm::ivec3& wanted, std::si
                 glm::clamp(wanted, glm::ivec3{1}, glm::max(lattice->box() / 4, glm::ivec3{1})))
           .value();
   std::vector<LatticeTriangle> triangles;
+  triangles.reserve(snapped.triangles.size());
   for (const auto& t : snapped.triangles) triangles.push_back(to_engine(t));
   const VoxelLists lists = bin_triangles(grid, triangles);
   ASSERT_EQ(lists.first.size(), grid.cells() + 1);

@@ -46,7 +46,10 @@ Scene sheet(int n, double jitter, Random& random) {
       corner.push_back(moved(x * cell, y * cell, x > 0 && x < n && y > 0 && y < n));
     }
   }
-  const auto at = [&](int x, int y) { return corner[static_cast<std::size_t>(y * (n + 1) + x)]; };
+  const auto at = [&](int x, int y) {
+    return corner[static_cast<std::size_t>(y) * static_cast<std::size_t>(n + 1) +
+                  static_cast<std::size_t>(x)];
+  };
   for (int y = 0; y < n; ++y) {
     for (int x = 0; x < n; ++x) {
       const std::uint32_t middle = moved((x + 0.5) * cell, (y + 0.5) * cell, true);

@@ -1,6 +1,6 @@
 // Cases 4, 6 and 12: scenes scaled by powers of two, slivers, signs of zero.
+#include <bit>
 #include <cmath>
-#include <cstring>
 
 #include "tests/adversarial/cases.hpp"
 
@@ -8,8 +8,8 @@ namespace gridrt::adversarial {
 namespace {
 
 bool same_bits(const Hit& a, const Hit& b) {
-  return a.id == b.id && std::memcmp(&a.t, &b.t, sizeof a.t) == 0 &&
-         std::memcmp(&a.u, &b.u, sizeof a.u) == 0 && std::memcmp(&a.v, &b.v, sizeof a.v) == 0;
+  const auto bits = [](double x) { return std::bit_cast<std::uint64_t>(x); };
+  return a.id == b.id && bits(a.t) == bits(b.t) && bits(a.u) == bits(b.u) && bits(a.v) == bits(b.v);
 }
 
 TEST(Case04, ScaledByPowersOfTwoTheAnswersAreTheSameBits) {

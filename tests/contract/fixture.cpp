@@ -1,7 +1,7 @@
 #include "tests/contract/fixture.hpp"
 
+#include <bit>
 #include <cstdlib>
-#include <cstring>
 
 #include "tests/adversarial/bench.hpp"
 #include "tests/adversarial/meshes.hpp"
@@ -41,8 +41,8 @@ std::vector<Segment> awkward_segments(const Scene& scene, int bits, std::uint64_
 }
 
 bool same(const Hit& a, const Hit& b) {
-  return a.id == b.id && std::memcmp(&a.t, &b.t, sizeof a.t) == 0 &&
-         std::memcmp(&a.u, &b.u, sizeof a.u) == 0 && std::memcmp(&a.v, &b.v, sizeof a.v) == 0;
+  const auto bits = [](double x) { return std::bit_cast<std::uint64_t>(x); };
+  return a.id == b.id && bits(a.t) == bits(b.t) && bits(a.u) == bits(b.u) && bits(a.v) == bits(b.v);
 }
 
 ImageOptions plain(int bits, int pes) {

@@ -33,7 +33,8 @@ class BoxTree {
 
  private:
   struct Node {
-    Point lo, hi;
+    Point lo{};
+    Point hi{};
     std::uint32_t first = 0;  ///< of a leaf: first entry of order_; else the first child
     std::uint32_t count = 0;  ///< triangles of a leaf; 0: an inner node
   };
