@@ -37,8 +37,8 @@ std::vector<std::byte> nasty_garbage(std::mt19937& random) {
       return frame;
     }
     default: {
-      std::vector<std::byte> magics;
-      for (std::size_t i = 0; i < 9; ++i) magics.push_back(frame[below(random, 4)]);
+      std::vector<std::byte> magics(9);
+      for (std::byte& b : magics) b = frame[below(random, 4)];
       return magics;
     }
   }

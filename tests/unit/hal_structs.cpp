@@ -92,8 +92,8 @@ TEST(Enums, NamesAndKnownValues) {
   EXPECT_EQ(name(SectionKind::kBlocks), "Blocks");
   EXPECT_EQ(name(ErrorCode::kBadPayloadCrc), "BadPayloadCrc");
   EXPECT_TRUE(is_known(Layout::kNone));
-  EXPECT_FALSE(is_known(static_cast<Layout>(3)));
-  EXPECT_EQ(name(static_cast<FrameType>(0x77)), "");
+  EXPECT_FALSE(is_known(Layout{3}));
+  EXPECT_EQ(name(FrameType{0x77}), "");
 }
 
 TEST(Layouts, LimitsOfTheBoard) {

@@ -12,7 +12,8 @@ namespace gridrt {
 namespace {
 
 std::size_t index_of(const glm::ivec3& blocks, const glm::ivec3& b) {
-  return static_cast<std::size_t>((b.z * blocks.y + b.y) * blocks.x + b.x);
+  const auto row = static_cast<std::size_t>(b.z * blocks.y + b.y);
+  return row * static_cast<std::size_t>(blocks.x) + static_cast<std::size_t>(b.x);
 }
 
 /// The definition in blocks.hpp, block by block.

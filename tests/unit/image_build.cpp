@@ -4,6 +4,7 @@
 #include <set>
 #include <tuple>
 
+#include "host/image/blocks.hpp"
 #include "host/image/image_file.hpp"
 #include "image_support.hpp"
 
@@ -13,10 +14,10 @@ namespace {
 using protocol::SectionKind;
 
 const std::vector<std::byte>& bytes_of(const Image& image, SectionKind kind, int pe = 0) {
-  static const std::vector<std::byte> kNone;
+  static const std::vector<std::byte> none;
   const ImageSection* section = image.find(kind, pe);
   if (section == nullptr) ADD_FAILURE() << "no section " << protocol::name(kind);
-  return section == nullptr ? kNone : section->bytes;
+  return section == nullptr ? none : section->bytes;
 }
 
 /// The lists of an image by voxel: owner, then (local id, mask) in order.
@@ -100,6 +101,32 @@ TEST(BuildImage, CellsHoldWhatTheGridGives) {
       if (!cells[c].references.empty()) {
         EXPECT_EQ(cells[c].pe, (*owners)[c]);
       }
+    }
+  }
+}
+
+TEST(BuildImage, BlocksCountTheirCellsAndSkip) {
+  for (const ImageOptions& options : many_options()) {
+    const Image image = must_build(random_scene(40, 3, 0.1F), options);
+    const auto decoded = decode_triangles(image);
+    ASSERT_TRUE(decoded) << decoded.error().message;
+    const VoxelGrid grid = image.grid();
+    const auto occupancy = block_occupancy(grid, bin_triangles(grid, decoded->triangles));
+    const auto jumps = skip_field(block_count(grid), occupancy);
+    const protocol::BlockCodec codec(image.header);
+    std::uint32_t base = 0;
+    std::size_t empty = 0;
+    for (std::size_t i = 0; i < occupancy.size(); ++i) {
+      const auto record = codec.at(bytes_of(image, SectionKind::kBlocks), i);
+      EXPECT_EQ(record.occupancy, occupancy[i]);
+      EXPECT_EQ(record.base, occupancy[i] == 0 ? 0 : base);
+      EXPECT_TRUE(std::equal(jumps[i].begin(), jumps[i].end(), record.jump.begin()));
+      base += static_cast<std::uint32_t>(std::popcount(record.occupancy));
+      if (occupancy[i] == 0) ++empty;
+    }
+    EXPECT_EQ(base, image.header.occupied_cells);
+    if (!options.grid) {
+      EXPECT_GT(empty, 0U);
     }
   }
 }

@@ -211,6 +211,11 @@ std::vector<Corruption> section_corruptions() {
        "section References of PE 0"},
       {"a shared section with an owner", [](Image& image) { image.sections[0].pe = 1; },
        "section Blocks"},
+      {"no triangle left",
+       [](Image& image) {
+         for (const int pe : {0, 1}) section(image, SectionKind::kTriangles, pe).bytes.clear();
+       },
+       "no PE holds the triangle with local id 0"},
       {"an id out of order",
        [](Image& image) {
          protocol::detail::put32(section(image, SectionKind::kIds).bytes.data() + 8, 0);
