@@ -149,6 +149,17 @@ TEST_F(Files, LeaveNothingWhenAbandoned) {
   EXPECT_EQ(entries(), 0);
 }
 
+TEST_F(Files, LeaveNothingWhenTheyCannotBePutInPlace) {
+  const fs::path path = folder_ / "out";
+  auto file = OutputFile::create(path).value();
+  ASSERT_TRUE(file.write("text").has_value());
+  fs::create_directory(path);
+  const auto result = file.commit();
+  ASSERT_FALSE(result.has_value());
+  EXPECT_EQ(result.error().kind, ErrorKind::kFile);
+  EXPECT_EQ(entries(), 1);
+}
+
 TEST_F(Files, FollowSymbolicLinks) {
   fs::create_symlink("target", folder_ / "link");
   ASSERT_TRUE(write(folder_ / "link", "text").has_value());

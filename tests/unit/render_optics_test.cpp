@@ -58,7 +58,9 @@ TEST(Optics, FresnelGoesToOneAtGrazing) {
 
 TEST(Optics, TotalReflectionBeginsAtTheCriticalAngle) {
   const double critical = std::asin(1.0 / 1.5);
-  EXPECT_EQ(refract(incoming(critical + 1e-9), kUp, 1.5).reflectance, 1.0);
+  const Refraction above = refract(incoming(critical + 1e-9), kUp, 1.5);
+  EXPECT_EQ(above.reflectance, 1.0);
+  EXPECT_EQ(above.direction, glm::dvec3(0.0));
   const Refraction below = refract(incoming(critical - 1e-6), kUp, 1.5);
   EXPECT_LT(below.reflectance, 1.0);
   EXPECT_NEAR(below.direction.x, 1.0, 1e-5);

@@ -24,6 +24,7 @@ class BruteDevice final : public Device {
 
   Result<void> trace(std::span<const Segment> segments, Query query, std::span<Hit> hits) override {
     ++batches;
+    asked.insert(asked.end(), segments.begin(), segments.end());
     for (std::size_t i = 0; i < segments.size(); ++i) hits[i] = answer(segments[i], query);
     if (broken_id) hits.front().id = *broken_id;
     return {};
@@ -33,6 +34,7 @@ class BruteDevice final : public Device {
   [[nodiscard]] std::string name() const override { return "brute"; }
 
   int batches = 0;
+  std::vector<Segment> asked;             ///< all segments so far
   std::optional<std::int32_t> broken_id;  ///< answered once in each batch instead of the truth
 
  private:

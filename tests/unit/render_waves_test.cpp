@@ -140,6 +140,45 @@ TEST(Waves, ASealedMirroredBoxIsLeftByNoRay) {
   EXPECT_EQ(setup.report.deepest, depth);
 }
 
+// A red mirror faces a green one: nothing that comes back by way of both can be seen.
+TEST(Waves, NoRayIsSentThatCannotBeSeen) {
+  SceneMaker maker;
+  maker.scene.materials[0] = test::black();
+  maker.scene.materials.push_back(test::black());
+  maker.scene.materials[0].mirror = {1.0F, 0.0F, 0.0F};
+  maker.scene.materials[1].mirror = {0.0F, 1.0F, 0.0F};
+  maker.quad({-9, -9, 0}, {9, -9, 0}, {9, 9, 0}, {-9, 9, 0}, 0);
+  maker.quad({-9, -9, 3}, {9, -9, 3}, {9, 9, 3}, {-9, 9, 3}, 1);
+  BruteScene setup(maker.scene);
+  Camera camera;
+  camera.eye = {0.0, 0.0, 2.0};
+  setup.render_film(camera, picture(4, 4, 9));
+  EXPECT_EQ(setup.report.primary, 16U);
+  EXPECT_EQ(setup.report.mirror, 16U);
+}
+
+TEST(Waves, SecondaryRaysIgnoreTheTriangleThatTheyLeave) {
+  SceneMaker maker;
+  maker.scene.materials[0].mirror = glm::vec3(0.5F);
+  maker.triangle({-9, -9, 0}, {9, -9, 0}, {0, 9, 0});
+  Light lamp;
+  lamp.position = {0.0, 0.0, 4.0};
+  maker.scene.lights = {lamp};
+  const BruteScene setup(maker.scene);
+  const PinholeCamera camera = PinholeCamera::create({}, 1, 1).value();
+  test::BruteDevice device(setup.triangles);
+  RenderReport report;
+  ASSERT_TRUE(render({setup.scene, setup.lattice, setup.triangles, camera}, picture(1, 1, 1),
+                     device, report)
+                  .has_value());
+  ASSERT_EQ(device.asked.size(), 3U);  // primary, shadow, mirror
+  EXPECT_EQ(device.asked[0].ignore, kNoTriangle);
+  for (const std::size_t i : {std::size_t{1}, std::size_t{2}}) {
+    EXPECT_EQ(device.asked[i].ignore, 0U);
+    EXPECT_EQ(device.asked[i].t0, 0.0);
+  }
+}
+
 // A slab met at right angles: each face reflects F = 0.04 of what meets it. Depth 0 shows nothing,
 // depth 1 the front's reflection F, depth 2 also (1 - F)^2 through the back; in the end all light.
 TEST(Waves, AGlassSlabPassesOnAllLight) {
