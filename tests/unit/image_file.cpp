@@ -136,35 +136,44 @@ TEST_F(ImageFile, ErrorsNameFileAndReason) {
   EXPECT_NE(bad.error().message.find("section Scene"), std::string::npos) << bad.error().message;
 }
 
+/// Writes while no file may grow beyond `bytes`, as on a full disk.
+Result<void> write_with_limit(const Image& image, const fs::path& path, std::size_t bytes) {
+  const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
+  rlimit old_limit{};
+  EXPECT_EQ(::getrlimit(RLIMIT_FSIZE, &old_limit), 0);
+  rlimit limit = old_limit;
+  limit.rlim_cur = bytes;
+  EXPECT_EQ(::setrlimit(RLIMIT_FSIZE, &limit), 0);
+  auto written = write_image(image, path);
+  EXPECT_EQ(::setrlimit(RLIMIT_FSIZE, &old_limit), 0);
+  std::signal(SIGXFSZ, old_handler);
+  return written;
+}
+
 TEST_F(ImageFile, FailedWritesLeaveTheOldFileAndNothingElse) {
   const fs::path path = folder() / "a.grt";
   const Image small = must_build(random_scene(8, 3));
   ASSERT_TRUE(write_image(small, path));
   const std::vector<std::byte> before = content(path);
-  const Image large = must_build(random_scene(400, 4));
-
-  // A file-size limit stops the write half-way, as a full disk does.
-  const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
-  rlimit old_limit{};
-  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &old_limit), 0);
-  rlimit limit = old_limit;
-  limit.rlim_cur = 10000;
-  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &limit), 0);
-  const auto written = write_image(large, path);
-  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &old_limit), 0);
-  std::signal(SIGXFSZ, old_handler);
-
-  ASSERT_FALSE(written);
-  EXPECT_EQ(written.error().kind, ErrorKind::kFile);
-  EXPECT_NE(written.error().message.find("a.grt"), std::string::npos);
-  EXPECT_EQ(content(path), before);
-  EXPECT_EQ(files(), 1U);
-
+  ImageOptions options;
+  options.with_scene = false;
+  const Image large = must_build(random_scene(400, 4), options);
+  const std::size_t size = serialize_image(large).size();
+  for (const std::size_t limit : {std::size_t{0}, std::size_t{100}, size / 2, size - 4}) {
+    const auto written = write_with_limit(large, path, limit);
+    ASSERT_FALSE(written) << limit << " of " << size;
+    EXPECT_EQ(written.error().kind, ErrorKind::kFile);
+    EXPECT_NE(written.error().message.find("a.grt"), std::string::npos);
+    EXPECT_EQ(content(path), before);
+    EXPECT_EQ(files(), 1U);
+  }
   EXPECT_FALSE(write_image(small, folder() / "no" / "such" / "a.grt"));
   const auto directory = write_image(small, folder());
   ASSERT_FALSE(directory);
   EXPECT_EQ(directory.error().kind, ErrorKind::kFile);
   EXPECT_EQ(files(), 1U);
+  ASSERT_TRUE(write_with_limit(large, path, size));
+  EXPECT_EQ(content(path), serialize_image(large));
 }
 
 TEST_F(ImageFile, NewFilesHaveTheUsualMode) {

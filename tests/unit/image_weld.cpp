@@ -37,5 +37,13 @@ TEST(Weld, AsAMapWould) {
   }
 }
 
+TEST(Weld, PointsOnALineStayApart) {
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<glm::ivec3> points(20000, glm::ivec3{5});
+    for (std::size_t i = 0; i < points.size(); ++i) points[i][axis] = static_cast<int>(i);
+    EXPECT_EQ(weld(points).points, points);
+  }
+}
+
 }  // namespace
 }  // namespace gridrt
