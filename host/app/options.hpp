@@ -38,7 +38,7 @@ struct HostOptions {
   std::string device = "auto";
   std::string schedule = "rays";
   bool list_devices = false;
-  int threads = 0;           ///< 0: one a core
+  int threads = 0;            ///< 0: one a core
   std::size_t batch = 32768;  ///< rays a frame
   CutOptions cut;
   bool exact = false;
