@@ -113,7 +113,7 @@ std::vector<Corruption> record_corruptions(const Image& image) {
       triangle(
           "an id that is not there", [](auto& r) { r.id = 4000; }, in_triangles),
       triangle(
-          "ids out of order", [](auto& r) { r.id = 0; }, in_triangles),
+          "ids out of order", [](auto& r) { r.id = 0; }, in_triangles + ": id 0 after"),
       vertex(
           "another place", [](auto& r) { r.q[1] += 1; }, ""),
       vertex(
