@@ -7,6 +7,7 @@ if(NOT TARGET gridrt_fuzzing)
   add_library(gridrt_fuzzing INTERFACE)
   target_compile_options(gridrt_flags INTERFACE
     -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(gridrt_flags INTERFACE -fsanitize=address,undefined)
   target_link_options(gridrt_fuzzing INTERFACE -fsanitize=fuzzer,address,undefined)
 endif()
 
