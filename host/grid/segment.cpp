@@ -102,17 +102,13 @@ Cut cut_filtered(const Lattice& lattice, const Ray& ray) {
   return cut;
 }
 
-}  // namespace detail
-
-namespace {
-
-detail::Cut cut(const Lattice& lattice, const Ray& ray) {
-  detail::Cut result = detail::cut_filtered(lattice, ray);
-  if (result.outcome == detail::Cut::Outcome::kUndecided) result = detail::cut_exact(lattice, ray);
+Cut cut(const Lattice& lattice, const Ray& ray) {
+  Cut result = cut_filtered(lattice, ray);
+  if (result.outcome == Cut::Outcome::kUndecided) result = cut_exact(lattice, ray);
   return result;
 }
 
-}  // namespace
+}  // namespace detail
 
 Result<void> validate(const Ray& ray) {
   constexpr std::array<char, 3> kAxes{'x', 'y', 'z'};
@@ -141,16 +137,9 @@ Result<void> validate(const Ray& ray) {
 }
 
 Segment make_segment(const Lattice& lattice, const Ray& ray) {
-  const detail::Cut c = cut(lattice, ray);
+  const detail::Cut c = detail::cut(lattice, ray);
   if (c.outcome != detail::Cut::Outcome::kCut) return {};
   return {c.p0, c.p1, c.t0, c.t1, kNoTriangle};
-}
-
-Segment make_secondary_segment(const Lattice& lattice, const Ray& ray, const glm::ivec3& p0,
-                               std::uint32_t ignore) {
-  const detail::Cut c = cut(lattice, ray);
-  if (c.outcome != detail::Cut::Outcome::kCut) return {};
-  return {p0, c.p1, 0.0, c.t1, ignore};
 }
 
 }  // namespace gridrt

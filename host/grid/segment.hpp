@@ -47,9 +47,11 @@ std::optional<glm::ivec3> secondary_origin(const Lattice& lattice, const Segment
                                            const LatticeTriangle& triangle,
                                            const glm::dvec3& direction);
 
-/// A secondary ray: end point and parameters of make_segment, start point `p0` (tmin is 0, so t0
-/// is 0), `ignore` the triangle it leaves. A ray whose line misses the box is a miss.
+/// A secondary ray: its start point is `p0` (tmin is 0, so t0 is 0), `ignore` the triangle it
+/// leaves, its end point and parameter those of make_segment. An end point that rounding has put
+/// on the plane of `triangle` or behind it is moved like the start point, as far as the box allows:
+/// a ray that leaves a plane cannot come back to it. A ray whose line misses the box is a miss.
 Segment make_secondary_segment(const Lattice& lattice, const Ray& ray, const glm::ivec3& p0,
-                               std::uint32_t ignore);
+                               const LatticeTriangle& triangle, std::uint32_t ignore);
 
 }  // namespace gridrt

@@ -26,4 +26,7 @@ Cut cut_filtered(const Lattice& lattice, const Ray& ray);
 /// the largest double.
 Cut cut_exact(const Lattice& lattice, const Ray& ray);
 
+/// The filter, and the rationals where it does not decide.
+Cut cut(const Lattice& lattice, const Ray& ray);
+
 }  // namespace gridrt::detail

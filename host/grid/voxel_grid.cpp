@@ -58,8 +58,8 @@ Result<VoxelGrid> make_grid(const Lattice& lattice, std::size_t triangles,
     }
     // Voxels [k e, (k + 1) e] up to n e must cover [0, box].
     const int box = lattice.box()[a];
-    grid.edge[a] = std::max(1, (box + n - 1) / n);
-    if (n > 1 && grid.edge[a] < kMinEdge) {
+    if (n <= box) grid.edge[a] = std::max(1, (box + n - 1) / n);
+    if (n > 1 && (n > box || grid.edge[a] < kMinEdge)) {
       return fail(ErrorKind::kLimit,
                   fmt::format("a grid of {} voxels along {} is too fine for a lattice of {} steps",
                               n, axis, box),
@@ -67,8 +67,12 @@ Result<VoxelGrid> make_grid(const Lattice& lattice, std::size_t triangles,
                               std::max(1, box / kMinEdge), axis));
     }
   }
-  if (grid.cells() > kMaxCells) {
-    return fail(ErrorKind::kLimit, fmt::format("a grid of {} voxels", grid.cells()),
+  // Each count is below 2^23 here, so that the product of two cannot wrap.
+  const std::size_t layer =
+      static_cast<std::size_t>(grid.count.x) * static_cast<std::size_t>(grid.count.y);
+  if (layer > kMaxCells || layer * static_cast<std::size_t>(grid.count.z) > kMaxCells) {
+    return fail(ErrorKind::kLimit,
+                fmt::format("a grid of {}x{}x{} voxels", grid.count.x, grid.count.y, grid.count.z),
                 fmt::format("use at most {} voxels in all", kMaxCells));
   }
   return grid;

@@ -64,7 +64,7 @@ class Pe {
  private:
   struct Triangle {
     EdgeTriangle edges;
-    std::uint32_t id;
+    std::uint32_t id = 0;
   };
   [[nodiscard]] std::optional<ExactHit> intersect(const PeRay& ray, const glm::ivec3& d,
                                                   const Triangle& triangle) const;

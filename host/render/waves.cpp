@@ -64,10 +64,11 @@ Result<void> WaveTracer::trace(std::span<const Segment> segments, Query query,
 }
 
 Segment WaveTracer::secondary(const Path& path, const Hit& hit, const Ray& ray) const {
-  const auto origin =
-      secondary_origin(input_.lattice, path.segment, surfaces_.triangle(hit.id), ray.direction);
+  const LatticeTriangle& left = surfaces_.triangle(hit.id);
+  const auto origin = secondary_origin(input_.lattice, path.segment, left, ray.direction);
   if (!origin) return {};  // it leaves the box: a miss
-  return make_secondary_segment(input_.lattice, ray, *origin, static_cast<std::uint32_t>(hit.id));
+  return make_secondary_segment(input_.lattice, ray, *origin, left,
+                                static_cast<std::uint32_t>(hit.id));
 }
 
 Result<void> WaveTracer::band(Film& film, std::size_t first, std::size_t pixels,

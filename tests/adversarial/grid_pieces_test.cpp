@@ -187,6 +187,7 @@ TEST(GridPieces, ExactTestKeyAndParameters) {
 TEST(GridPieces, StartsOfSecondaryRays) {
   Random random(105);
   std::size_t starts = 0;
+  std::size_t moved_ends = 0;
   std::size_t outside = 0;
   for (int round = 0; round < 300; ++round) {
     const int bits = random.between(kMinBits, kMaxBits);
@@ -219,22 +220,27 @@ TEST(GridPieces, StartsOfSecondaryRays) {
       const Ray ray{in_scene(tracer.lattice(), glm::dvec3{*got}), way, 0.0};
       if (way == glm::dvec3{0.0}) continue;
       const Segment whole = make_segment(*lattice, ray);
-      const Segment rest = make_secondary_segment(*lattice, ray, *got, id);
+      const Segment rest = make_secondary_segment(*lattice, ray, *got, to_engine(triangle), id);
       const truth::Segment cut = truth::cut(tracer.lattice(), to_truth(ray));
       if (!cut.meets_box) {
         ASSERT_TRUE(rest.is_miss());
         continue;
       }
       ASSERT_EQ(rest.p0, *got);
-      ASSERT_EQ(to_truth(rest.p1), cut.p1);
+      const truth::Point end =
+          truth::secondary_end(tracer.lattice(), cut.p1, triangle, {way.x, way.y, way.z});
+      if (end != cut.p1) ++moved_ends;
+      ASSERT_EQ(to_truth(rest.p1), end);
       ASSERT_EQ(rest.t0, 0.0);
       ASSERT_TRUE(truth::close(rest.t1, cut.t1, 1e-13));
       ASSERT_EQ(rest.ignore, id);
-      ASSERT_TRUE(whole.is_miss() || whole.p1 == rest.p1);
+      ASSERT_TRUE(whole.is_miss() || whole.p1 == rest.p1 || end != cut.p1);
     }
   }
   EXPECT_GT(starts, 20000U);
-  std::printf("secondary starts: %zu, %zu outside the box, 0 differences\n", starts, outside);
+  EXPECT_GT(moved_ends, 0U);
+  std::printf("secondary starts: %zu, %zu outside the box; %zu ends moved; 0 differences\n", starts,
+              outside, moved_ends);
 }
 
 }  // namespace

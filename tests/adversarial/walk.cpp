@@ -66,9 +66,13 @@ std::vector<Path> continue_paths(const Bench& bench, std::span<const Path> paths
       continue;
     }
     if (start) {
-      next.segment =
-          make_secondary_segment(bench.lattice(), next.ray, *start, static_cast<std::uint32_t>(id));
+      next.segment = make_secondary_segment(bench.lattice(), next.ray, *start, to_engine(triangle),
+                                            static_cast<std::uint32_t>(id));
       next.expected = truth::cut(lattice, to_truth(next.ray));
+      if (next.expected.meets_box) {
+        next.expected.p1 =
+            truth::secondary_end(lattice, next.expected.p1, triangle, {d.x, d.y, d.z});
+      }
       next.expected.p0 = *true_start;
       next.expected.t0 = 0;
       next.expected.ignore = static_cast<std::int64_t>(id);

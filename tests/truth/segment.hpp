@@ -42,4 +42,9 @@ std::optional<Point> secondary_start(const Lattice& lattice, const Point& p0, co
                                      const Triangle& triangle,
                                      const std::array<double, 3>& direction);
 
+/// Where it ends: `end`, moved as the start is where it lies on the plane of `triangle` or behind
+/// it, but not out of the box.
+Point secondary_end(const Lattice& lattice, const Point& end, const Triangle& triangle,
+                    const std::array<double, 3>& direction);
+
 }  // namespace gridrt::truth
