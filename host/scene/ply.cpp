@@ -150,7 +150,7 @@ class PlyReader {
       if (!index) {
         return std::unexpected(index.error());
       }
-      if (*index < 0 || static_cast<std::uint64_t>(*index) >= vertex_count_) {
+      if (static_cast<std::uint64_t>(*index) >= vertex_count_) {
         return body_.bad(fmt::format("vertex index {} of only {}", *index, vertex_count_));
       }
       const auto corner = static_cast<std::uint32_t>(*index);

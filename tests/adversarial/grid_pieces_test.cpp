@@ -1,6 +1,8 @@
 // The pieces of host/grid, one by one, against the truth: lattice, snapping, segments, the exact
 // test, starts of secondary rays.
+#include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include <gtest/gtest.h>
 
@@ -241,6 +243,39 @@ TEST(GridPieces, StartsOfSecondaryRays) {
   EXPECT_GT(moved_ends, 0U);
   std::printf("secondary starts: %zu, %zu outside the box; %zu ends moved; 0 differences\n", starts,
               outside, moved_ends);
+}
+
+TEST(Case28, NanAndInfinityAreRefusedWhereTheyEnter) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinity = std::numeric_limits<double>::infinity();
+  const Ray good{{0, 0, 0}, {0, 0, 1}, 0.0, infinity};
+  EXPECT_TRUE(validate(good));
+  for (const double bad : {nan, infinity, -infinity}) {
+    for (int i = 0; i < 3; ++i) {
+      Ray ray = good;
+      ray.origin[i] = bad;
+      EXPECT_FALSE(validate(ray));
+      ray = good;
+      ray.direction[i] = bad;
+      EXPECT_FALSE(validate(ray));
+      std::vector<glm::vec3> positions{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+      positions[1][i] = static_cast<float>(bad);
+      const std::vector<std::array<std::uint32_t, 3>> triangles{{0, 1, 2}};
+      const auto lattice = make_lattice(positions, triangles, kDefaultBits);
+      ASSERT_FALSE(lattice);
+      EXPECT_EQ(lattice.error().kind, ErrorKind::kInput);
+      EXPECT_NE(lattice.error().message.find("vertex 1"), std::string::npos);
+    }
+    Ray ray = good;
+    ray.tmin = bad;
+    EXPECT_FALSE(validate(ray));
+  }
+  for (const auto& [tmin, tmax] :
+       {std::pair{-1.0, 1.0}, std::pair{2.0, 1.0}, std::pair{0.0, nan}, std::pair{-1e-300, 1.0}}) {
+    EXPECT_FALSE(validate({{0, 0, 0}, {0, 0, 1}, tmin, tmax})) << tmin << " " << tmax;
+  }
+  EXPECT_FALSE(validate({{0, 0, 0}, {0, -0.0, 0}}));
+  EXPECT_TRUE(validate({{0, 0, 0}, {0, std::numeric_limits<double>::denorm_min(), 0}}));
 }
 
 }  // namespace

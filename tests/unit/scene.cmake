@@ -2,6 +2,7 @@
 find_package(fmt REQUIRED)
 add_executable(unit_scene
   scene_builtin_test.cpp
+  scene_check_test.cpp
   scene_files_test.cpp
   scene_formats_test.cpp
   scene_gltf_test.cpp

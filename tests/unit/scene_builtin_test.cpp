@@ -50,6 +50,43 @@ TEST(SceneBuiltin, TeapotHasNewellsPatches) {
   EXPECT_NEAR(handle, -3.0F, 0.01F);
 }
 
+// Where two patches meet, the surface passes through their control points.
+TEST(SceneBuiltin, TeapotPassesThroughNewellsSeams) {
+  const Scene teapot = builtin("teapot?tessellation=4");
+  const auto has = [&](float x, float y, float z) {
+    return std::any_of(teapot.positions.begin(), teapot.positions.end(), [&](const glm::vec3& p) {
+      return glm::length(p - glm::vec3(x, y, z)) < 1e-6F;
+    });
+  };
+  for (const auto& [radius, height] : {std::pair{1.4F, 2.4F},
+                                       {1.5F, 2.4F},
+                                       {2.0F, 0.9F},
+                                       {1.5F, 0.15F},
+                                       {0.2F, 2.7F},
+                                       {1.3F, 2.4F},
+                                       {0.0F, 3.15F},
+                                       {0.0F, 0.0F}}) {
+    EXPECT_TRUE(has(radius, height, 0)) << radius << " " << height;
+    EXPECT_TRUE(has(0, height, -radius)) << radius << " " << height;
+    EXPECT_TRUE(has(-radius, height, 0)) << radius << " " << height;
+  }
+  for (const auto& [x, y] : {std::pair{-1.6F, 2.025F},
+                             {-1.5F, 2.25F},
+                             {-2.7F, 1.8F},
+                             {-3.0F, 1.8F},
+                             {-2.0F, 0.9F},
+                             {-1.9F, 0.6F},
+                             {1.7F, 1.425F},
+                             {1.7F, 0.6F},
+                             {2.7F, 2.4F},
+                             {3.3F, 2.4F},
+                             {2.8F, 2.4F},
+                             {3.2F, 2.4F}}) {
+    EXPECT_TRUE(has(x, y, 0)) << x << " " << y;
+  }
+  EXPECT_NEAR(volume_of(builtin("teapot?tessellation=40")), 25.92, 0.01);
+}
+
 TEST(SceneBuiltin, TeapotNormalsAgreeWithItsTriangles) {
   const Scene teapot = builtin("teapot?tessellation=16");
   std::size_t against = 0;
@@ -187,6 +224,7 @@ TEST(SceneBuiltin, RefusalsListWhatIsValid) {
            {"teapot?tesselation=3", {"tesselation=3", "tessellation"}},
            {"teapot?tessellation", {"tessellation"}},
            {"teapot?tessellation=0", {"'0'", "from 1 to 400"}},
+           {"teapot?tessellation=401", {"'401'", "from 1 to 400"}},
            {"teapot?tessellation=2.5", {"'2.5'", "whole"}},
            {"teapot?tessellation=nan", {"'nan'"}},
            {"teapot?tessellation=", {"''"}},

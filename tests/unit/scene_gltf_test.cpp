@@ -99,10 +99,14 @@ TEST(SceneGltf, ReadsIndicesOfEveryWidthAndStrides) {
         {"meshes", {{{"primitives", {{{"attributes", {{"POSITION", 0}}}, {"indices", 1}}}}}}},
         {"buffers", {{{"byteLength", 60}, {"uri", "b%20c"}}}},
         {"bufferViews",
-         {{{"buffer", 0}, {"byteOffset", 12}, {"byteLength", 48}, {"byteStride", 16}},
+         {{{"buffer", 0}, {"byteOffset", 8}, {"byteLength", 52}, {"byteStride", 16}},
           {{"buffer", 0}, {"byteLength", 12}}}},
         {"accessors",
-         {{{"bufferView", 0}, {"componentType", 5126}, {"count", 3}, {"type", "VEC3"}},
+         {{{"bufferView", 0},
+           {"byteOffset", 4},
+           {"componentType", 5126},
+           {"count", 3},
+           {"type", "VEC3"}},
           {{"bufferView", 1}, {"componentType", type}, {"count", 3}, {"type", "SCALAR"}}}}};
     const Scene scene = gltf(document, {{"b c", bytes}});
     EXPECT_EQ(scene.triangles, (Triples{{2, 1, 0}}));
@@ -203,6 +207,7 @@ TEST(SceneGltf, RefusesWrongPartsByPath) {
   refused(with("/accessors/0/sparse", json::object()), {"accessors[0]", "sparse"});
   refused(with("/accessors/0/bufferView", 2), {"bufferView", "2 bufferViews"});
   refused(with("/bufferViews/0/byteLength", 1000), {"bufferViews[0]", "48 bytes"});
+  refused(with("/bufferViews/0/byteOffset", 20), {"bufferViews[0]", "byte 56 of a buffer of 48"});
   refused(with("/bufferViews/0/byteOffset", 9007199254740991ULL), {"bufferViews[0]"});
   refused(with("/bufferViews/0/byteStride", 4), {"accessors[0]"});
   refused(with("/bufferViews/0/buffer", 1), {"bufferViews[0].buffer"});

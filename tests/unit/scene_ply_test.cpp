@@ -79,6 +79,18 @@ TEST(ScenePly, ReadsEveryTypeInBothByteOrders) {
   }
 }
 
+TEST(ScenePly, NegativeIntegersStayNegative) {
+  std::string bytes =
+      "ply\nformat binary_big_endian 1.0\nelement vertex 1\nproperty char x\nproperty short y\n"
+      "property int z\nend_header\n";
+  put<std::int8_t>(bytes, -3, true);
+  put<std::int16_t>(bytes, -300, true);
+  put<std::int32_t>(bytes, -70000, true);
+  const Scene scene = ply(bytes);
+  ASSERT_EQ(scene.positions.size(), 1U);
+  EXPECT_EQ(scene.positions[0], glm::vec3(-3, -300, -70000));
+}
+
 TEST(ScenePly, BinaryDataMayBeginWithALineFeed) {
   // Lines that end in CR alone, and a first data byte of 10.
   std::string bytes =
