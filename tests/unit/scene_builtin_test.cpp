@@ -104,7 +104,7 @@ TEST(SceneBuiltin, TeapotNormalsAgreeWithItsTriangles) {
   EXPECT_GT(volume_of(teapot), 0.0);
 }
 
-// A picture of the same teapot by others, y up but moved: every vertex of theirs lies on ours.
+// A mesh of the same teapot by others: every vertex of theirs lies on ours.
 TEST(SceneBuiltin, TeapotMatchesAPublishedMesh) {
   std::ifstream file(GRIDRT_SHARED_SCENES "/teapot.obj");
   if (!file) {
