@@ -28,12 +28,12 @@ enum class Query { kClosestHit, kAnyHit };
 
 /// How to open a device and talk to it.
 struct DeviceOptions {
-  std::string name = "auto";          ///< auto, seq, omp; usb[:SERIAL], sim, mpi when built in
-  std::string schedule = "rays";      ///< of software PEs
-  int threads = 0;                    ///< of omp; 0: all cores
+  std::string name = "auto";           ///< auto, seq, omp; usb[:SERIAL], sim, mpi when built in
+  std::string schedule = "rays";       ///< of software PEs
+  int threads = 0;                     ///< of omp; 0: all cores
   std::size_t rays_per_frame = 32768;  ///< batch size on the link, >= 1
-  int frames_in_flight = 4;           ///< >= 1
-  int timeout_ms = 10000;             ///< longest wait for one answer
+  int frames_in_flight = 4;            ///< >= 1
+  int timeout_ms = 10000;              ///< longest wait for one answer
 };
 
 /// What a device has done since it was opened.
