@@ -1,6 +1,7 @@
 #include "host/app/npz.hpp"
 
 #include <memory>
+#include <tuple>
 
 #include <fmt/format.h>
 #include <zip.h>
@@ -83,7 +84,7 @@ Result<std::vector<std::byte>> NpzWriter::pack() const {
     }
   }
   if (zip_close(archive.get()) != 0) return refuse(zip_strerror(archive.get()));
-  (void)archive.release();  // closing has freed it
+  std::ignore = archive.release();  // closing has freed it
   return read_source(target.get());
 }
 

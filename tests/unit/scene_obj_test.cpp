@@ -146,7 +146,7 @@ TEST(SceneObj, RefusesBadFacesByLine) {
 
 TEST(SceneObj, RefusesJunkByLine) {
   refused("hello world\n", {"mesh:1:", "'hello'"});
-  refused(std::string("v 0 0 0\n\0\1\2\xFF junk\n", 20), {"mesh:2:"});
+  refused(std::string("v 0 0 0\n\0\1\2\xFF junk\n", 18), {"mesh:2:"});
   refused(
       "\x7F"
       "ELF\x02\x01",
