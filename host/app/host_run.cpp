@@ -188,12 +188,12 @@ Result<void> HostRun::trace_picture() {
 
 Result<void> HostRun::explain_pixel(const PinholeCamera& camera) {
   if (!options_.explain) return {};
-  const auto [x, y] = *options_.explain;
-  const Ray ray = camera.ray(x, y, sample_position(0, options_.samples));
+  const glm::ivec2 pixel = *options_.explain;
+  const Ray ray = camera.ray(pixel.x, pixel.y, sample_position(0, options_.samples));
   const Segment segment = make_segment(prepared_.lattice, ray);
-  explanation_ =
-      fmt::format("pixel {},{}\nray origin {} {} {} direction {} {} {}\n", x, y, ray.origin.x,
-                  ray.origin.y, ray.origin.z, ray.direction.x, ray.direction.y, ray.direction.z);
+  explanation_ = fmt::format("pixel {},{}\nray origin {} {} {} direction {} {} {}\n", pixel.x,
+                             pixel.y, ray.origin.x, ray.origin.y, ray.origin.z, ray.direction.x,
+                             ray.direction.y, ray.direction.z);
   if (segment.is_miss()) {
     explanation_ +=
         "the ray does not meet the lattice box: a miss, nothing is sent to the device\n";
