@@ -12,7 +12,7 @@
 #include "host/app/progress.hpp"
 #include "host/app/statistics.hpp"
 #include "host/driver/device.hpp"
-#include "host/render/output_file.hpp"
+#include "host/image/output_file.hpp"
 #include "host/render/waves.hpp"
 
 namespace gridrt {

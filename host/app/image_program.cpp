@@ -11,7 +11,7 @@
 #include "host/app/prepared_scene.hpp"
 #include "host/app/progress.hpp"
 #include "host/image/image_file.hpp"
-#include "host/render/output_file.hpp"
+#include "host/image/output_file.hpp"
 #include "host/scene/load.hpp"
 
 namespace gridrt {

@@ -183,6 +183,7 @@ Result<NpyRayReader> NpyRayReader::open(const std::filesystem::path& path) {
   if (std::filesystem::is_directory(path, ignored)) {
     return at_path(ErrorKind::kFile, path, "cannot be read: it is a directory");
   }
+  // NOLINTNEXTLINE(cppcoreguidelines-owning-memory): owned at once by a unique_ptr that closes it
   reader.file_.reset(std::fopen(path.c_str(), "rbe"));
   if (!reader.file_) {
     return at_path(ErrorKind::kFile, path, "cannot be opened: " + system_message(errno));

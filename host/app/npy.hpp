@@ -14,7 +14,7 @@
 #include "hal/error.hpp"
 #include "host/driver/device.hpp"
 #include "host/grid/segment.hpp"
-#include "host/render/output_file.hpp"
+#include "host/image/output_file.hpp"
 
 namespace gridrt {
 
@@ -48,6 +48,7 @@ class NpyRayReader {
 
  private:
   struct Close {
+    // NOLINTNEXTLINE(cppcoreguidelines-owning-memory): the deleter of the handle's owner
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
   std::filesystem::path path_;

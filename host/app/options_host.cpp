@@ -138,7 +138,8 @@ Result<void> read_texts(const HostTexts& texts, HostOptions& options) {
   read(texts.up, options.up, vector("--up"));
   read(texts.fov, options.fov, [](const std::string& text) -> Result<double> {
     auto fov = parse_number("--fov", text);
-    if (fov && !(*fov > 0.0 && *fov < 180.0)) {
+    const bool in_range = fov && *fov > 0.0 && *fov < 180.0;
+    if (fov && !in_range) {
       return fail(ErrorKind::kUsage, fmt::format("--fov {}: expected degrees in (0, 180)", text));
     }
     return fov;
@@ -146,7 +147,7 @@ Result<void> read_texts(const HostTexts& texts, HostOptions& options) {
   read(texts.explain, options.explain,
        [](const std::string& text) { return parse_pixel("--explain", text); });
   read(texts.progress, options.progress, read_progress);
-  if (read.error()) return std::unexpected(*read.error());
+  if (const std::optional<Error>& error = read.error()) return std::unexpected(*error);
   options.threads = static_cast<int>(threads);
   options.samples = static_cast<int>(samples);
   options.depth = static_cast<int>(depth);
@@ -231,7 +232,7 @@ Result<std::variant<HostOptions, PrintAndExit>> parse_host_options(int argc,
       fmt::format("\n{}\n{}\n{}\n{}", kOutputNotes, scene_help(), kExamples, exit_code_help()));
   auto parsed = parse_command_line(app, argc, argv);
   if (!parsed) return std::unexpected(parsed.error());
-  if (*parsed) return **parsed;
+  if (const auto& exit = *parsed) return *exit;
   if (texts.version) return PrintAndExit{version_text("gridrt-host")};
   if (auto read = read_texts(texts, options); !read) return std::unexpected(read.error());
   if (options.list_devices) return options;

@@ -51,7 +51,7 @@ Result<std::variant<ImageProgramOptions, PrintAndExit>> parse_image_options(
   app.footer(fmt::format("\n{}\n{}\n{}", scene_help(), kExamples, exit_code_help()));
   auto parsed = parse_command_line(app, argc, argv);
   if (!parsed) return std::unexpected(parsed.error());
-  if (*parsed) return **parsed;
+  if (const auto& exit = *parsed) return *exit;
   if (version) return PrintAndExit{version_text("gridrt-image")};
   auto mode = read_progress(progress);
   if (!mode) return std::unexpected(mode.error());

@@ -72,7 +72,7 @@ Result<void> Session::trace(std::span<const Segment> segments, Query query, std:
   if (hits.size() != segments.size()) {
     return fail(ErrorKind::kInternal, "trace() needs a hit for each segment");
   }
-  Work work{segments, query, hits, {}, {}};
+  Work work{*answers_, segments, query, hits, {}, {}};
   const Hit miss = query == Query::kAnyHit ? any_hit_answer(false) : Hit{};
   for (std::size_t i = 0; i < segments.size(); ++i) {
     hits[i] = miss;
@@ -108,7 +108,7 @@ Result<Session::Batch> Session::make_batch(const Work& work, std::size_t first) 
   const std::span<std::byte> records = builder.extend(batch.count * bytes);
   for (std::size_t i = 0; i < batch.count; ++i) {
     const Segment& segment = work.segments[work.sent[first + i]];
-    pack_ray(layout_, segment, answers_->local_id(segment.ignore), work.query,
+    pack_ray(layout_, segment, work.answers.local_id(segment.ignore), work.query,
              records.subspan(i * bytes, bytes));
   }
   if (auto built = builder.finish(); !built) return std::unexpected(std::move(built.error()));
@@ -157,8 +157,8 @@ Result<void> Session::take_hits(Work& work, Batch& batch, const Frame& frame) {
       work.hits[index] = any_hit_answer(true);
       continue;
     }
-    if (answer.id >= answers_->size()) return broken("an id beyond the image");
-    const std::optional<Hit> hit = answers_->hit(work.segments[index], answer.id);
+    if (answer.id >= work.answers.size()) return broken("an id beyond the image");
+    const std::optional<Hit> hit = work.answers.hit(work.segments[index], answer.id);
     if (!hit) return broken("a triangle that the ray does not meet");
     work.hits[index] = *hit;
   }

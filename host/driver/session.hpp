@@ -43,6 +43,7 @@ class Session final : public Device {
 
   /// What one call of trace() works on.
   struct Work {
+    const Answers& answers;  ///< of the loaded image
     std::span<const Segment> segments;
     Query query = Query::kClosestHit;
     std::span<Hit> hits;

@@ -59,14 +59,15 @@ struct Reply {
 /// Waits for the answer to `sequence`, skipping answers to other frames.
 Result<Reply> wait_for(Connection& connection, std::uint32_t sequence) {
   for (;;) {
-    const Result<std::optional<Frame>> frame = connection.receive();
-    if (!frame) return std::unexpected(frame.error());
-    if (!*frame) return Reply{};
-    if ((*frame)->header.sequence != sequence) continue;
-    if ((*frame)->type() == FrameType::kNoOp) return Reply{true, {}};
+    const Result<std::optional<Frame>> received = connection.receive();
+    if (!received) return std::unexpected(received.error());
+    const std::optional<Frame>& frame = *received;
+    if (!frame) return Reply{};
+    if (frame->header.sequence != sequence) continue;
+    if (frame->type() == FrameType::kNoOp) return Reply{true, {}};
     constexpr std::size_t kBytes = protocol::ErrorBody::kBytes;
-    if ((*frame)->type() == FrameType::kError && (*frame)->payload.size() == kBytes) {
-      return Reply{true, protocol::load_error_body((*frame)->payload.first<kBytes>())};
+    if (frame->type() == FrameType::kError && frame->payload.size() == kBytes) {
+      return Reply{true, protocol::load_error_body(frame->payload.first<kBytes>())};
     }
   }
 }

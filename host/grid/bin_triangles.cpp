@@ -14,8 +14,8 @@ struct Entry {
 };
 
 struct CellRange {
-  glm::ivec3 first;
-  glm::ivec3 last;
+  glm::ivec3 first{0};
+  glm::ivec3 last{0};
 };
 
 /// Voxels whose closed box, grown by the margin, meets the triangle's bounding box.

@@ -47,7 +47,7 @@ bool TriangleBoxTest::plane_meets(const QuarterBox& box) const {
 }
 
 bool TriangleBoxTest::meets(const QuarterBox& box) const {
-  std::array<glm::i64vec3, 3> r;
+  std::array<glm::i64vec3, 3> r{};
   for (std::size_t i = 0; i < 3; ++i) r[i] = v_[i] - box.centre;
   for (int a = 0; a < 3; ++a) {
     if (std::min({r[0][a], r[1][a], r[2][a]}) > box.half[a]) return false;

@@ -56,7 +56,7 @@ Accepted<Pe> Pe::decode(const protocol::ImageHeader& header, std::uint8_t number
   pe.triangles_.resize(triangles.size() / triangle_codec.stride());
   for (std::size_t i = 0; i < pe.triangles_.size(); ++i) {
     const protocol::TriangleRecord record = triangle_codec.at(triangles, i);
-    LatticeTriangle triangle;
+    LatticeTriangle triangle{};
     for (std::size_t c = 0; c < 3; ++c) {
       if (record.vertex[c] >= corners.size()) return bad(SectionKind::kTriangles);
       triangle.v[c] = corners[record.vertex[c]];

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "hal/error.hpp"
+#include "host/image/output_file.hpp"
 #include "host/render/film.hpp"
-#include "host/render/output_file.hpp"
 
 namespace gridrt {
 

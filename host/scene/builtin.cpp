@@ -115,6 +115,7 @@ Result<BuiltinValues> read_options(const Builtin& builtin, std::string_view text
                                      [&](const BuiltinOption& o) { return key == o.name; });
     if (option == builtin.options.end() || equals == std::string_view::npos) {
       std::vector<std::string_view> names;
+      names.reserve(builtin.options.size());
       for (const BuiltinOption& o : builtin.options) {
         names.emplace_back(o.name);
       }
@@ -140,6 +141,7 @@ Result<Scene> make_builtin(std::string_view spec) {
       std::find_if(all.begin(), all.end(), [&](const Builtin& b) { return name == b.name; });
   if (builtin == all.end()) {
     std::vector<std::string_view> names;
+    names.reserve(all.size());
     for (const Builtin& b : all) {
       names.emplace_back(b.name);
     }
@@ -152,7 +154,9 @@ Result<Scene> make_builtin(std::string_view spec) {
   if (!values) {
     return std::unexpected(values.error());
   }
-  Scene scene = builtin->make(*values);
+  Result<Scene> made = builtin->make(*values);
+  if (!made) return made;
+  Scene& scene = *made;
   if (scene.materials.empty()) {
     scene.materials.emplace_back();
   }
@@ -164,7 +168,7 @@ Result<Scene> make_builtin(std::string_view spec) {
   if (const auto ok = check_scene(scene, fmt::format("builtin:{}", shorten(spec))); !ok) {
     return std::unexpected(ok.error());
   }
-  return scene;
+  return made;
 }
 
 std::uint64_t SplitMix64::bits() {

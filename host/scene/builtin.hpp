@@ -11,6 +11,7 @@
 
 #include <glm/vec3.hpp>
 
+#include "hal/error.hpp"
 #include "host/scene/scene.hpp"
 
 namespace gridrt::scene_detail {
@@ -52,7 +53,7 @@ struct Builtin {
   const char* name;
   const char* summary;
   std::vector<BuiltinOption> options;
-  Scene (*make)(const BuiltinValues& values);
+  Result<Scene> (*make)(const BuiltinValues& values);
 };
 
 /// The groups of built-in scenes, one a source file.

@@ -14,7 +14,7 @@ namespace {
 constexpr double kMaxSeed = 4294967295.0;
 
 // Slivers keep their thinness in float32 because their thin extent begins at 0.
-Scene make_slivers(const BuiltinValues& values) {
+Result<Scene> make_slivers(const BuiltinValues& values) {
   Scene scene;
   const std::uint32_t count = values.integer("triangles");
   const double thin = 2.0 / values.real("aspect");
@@ -42,7 +42,7 @@ Scene make_slivers(const BuiltinValues& values) {
 }
 
 // A closed disc of triangles around one vertex.
-Scene make_fan(const BuiltinValues& values) {
+Result<Scene> make_fan(const BuiltinValues& values) {
   Scene scene;
   const std::uint32_t valence = values.integer("valence");
   const double depth = values.real("depth");
@@ -60,7 +60,7 @@ Scene make_fan(const BuiltinValues& values) {
 }
 
 // Triangles anywhere in the cube [-1, 1]^3; some through the whole cube, and each several times.
-Scene make_soup(const BuiltinValues& values) {
+Result<Scene> make_soup(const BuiltinValues& values) {
   Scene scene;
   const std::uint32_t small = values.integer("triangles");
   const std::uint32_t large = std::min(values.integer("large"), small);
@@ -87,7 +87,7 @@ Scene make_soup(const BuiltinValues& values) {
 }
 
 // Points, segments and flat triangles by turns; none may ever be hit.
-Scene make_degenerate(const BuiltinValues& values) {
+Result<Scene> make_degenerate(const BuiltinValues& values) {
   Scene scene;
   SplitMix64 random(values.integer("seed"));
   for (std::uint32_t i = 0; i < values.integer("triangles"); ++i) {

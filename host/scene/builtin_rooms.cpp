@@ -11,7 +11,7 @@ namespace {
 // A colour that nothing within a sealed scene has: a ray that leaks shows it.
 constexpr glm::vec3 kLeak{1.0F, 0.0F, 1.0F};
 
-Scene make_room(const BuiltinValues& values) {
+Result<Scene> make_room(const BuiltinValues& values) {
   Scene scene;
   const std::uint32_t wall = add_material(scene, matte("wall", {0.75F, 0.72F, 0.65F}));
   const std::uint32_t block = add_material(scene, matte("block", {0.35F, 0.50F, 0.70F}));
@@ -25,7 +25,7 @@ Scene make_room(const BuiltinValues& values) {
   return scene;
 }
 
-Scene make_mirrorbox(const BuiltinValues& values) {
+Result<Scene> make_mirrorbox(const BuiltinValues& values) {
   Scene scene;
   const std::uint32_t mirror = add_material(scene, mirror_of({0.95F, 0.97F, 0.95F}));
   const std::uint32_t ball = add_material(scene, glossy("ball", {0.85F, 0.45F, 0.15F}, 0.0F));
@@ -41,7 +41,7 @@ Scene make_mirrorbox(const BuiltinValues& values) {
 
 // Shells around one centre: glass and air by turns. An index of refraction is that of the inside
 // over that of the outside, so the inner sides of the glass have 1 / 1.5.
-Scene make_glass(const BuiltinValues& values) {
+Result<Scene> make_glass(const BuiltinValues& values) {
   Scene scene;
   const std::uint32_t into_glass = add_material(scene, glass_of(1.5F));
   const std::uint32_t into_air = add_material(scene, glass_of(1.0F / 1.5F));
@@ -56,10 +56,12 @@ Scene make_glass(const BuiltinValues& values) {
   if (values.integer("floor") == 1) {
     constexpr int kSquares = 10;
     for (int i = 0; i < kSquares * kSquares; ++i) {
-      const double x = i % kSquares - kSquares / 2;
-      const double z = static_cast<double>(i / kSquares) - kSquares / 2;
+      const int column = i % kSquares;
+      const int row = i / kSquares;
+      const double x = column - 0.5 * kSquares;
+      const double z = row - 0.5 * kSquares;
       add_quad(scene, {{{x, -1.6, z}, {x, -1.6, z + 1}, {x + 1, -1.6, z + 1}, {x + 1, -1.6, z}}},
-               (i + i / kSquares) % 2 == 0 ? floor : dark);
+               (i + row) % 2 == 0 ? floor : dark);
     }
   }
   scene.lights = {lamp({-4.0, 6.0, 4.0}, 0.9F)};

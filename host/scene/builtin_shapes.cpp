@@ -16,9 +16,9 @@ namespace {
 
 constexpr double kFar = 1e37;  // leaves room within float32 for a size on top of a place
 
-Scene make_empty(const BuiltinValues&) { return {}; }
+Result<Scene> make_empty(const BuiltinValues&) { return {}; }
 
-Scene make_triangle(const BuiltinValues& values) {
+Result<Scene> make_triangle(const BuiltinValues& values) {
   Scene scene;
   const double s = values.real("size");
   add_vertex(scene, {-s, -s, 0.0});
@@ -28,12 +28,12 @@ Scene make_triangle(const BuiltinValues& values) {
   return scene;
 }
 
-Scene make_quad(const BuiltinValues& values) {
+Result<Scene> make_quad(const BuiltinValues& values) {
   Scene scene;
   const double s = values.real("size") / 2.0;
   const int axis = values.choice("axis")[0] - 'x';
   const glm::dvec3 centre = values.vector("centre");
-  std::array<glm::dvec3, 4> corners;
+  std::array<glm::dvec3, 4> corners{};
   constexpr int kSigns[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
   for (std::size_t i = 0; i < 4; ++i) {
     corners[i] = centre;
@@ -44,7 +44,7 @@ Scene make_quad(const BuiltinValues& values) {
   return scene;
 }
 
-Scene make_cube(const BuiltinValues& values) {
+Result<Scene> make_cube(const BuiltinValues& values) {
   Scene scene;
   const glm::dvec3 half = values.vector("size") * 0.5;
   add_box(scene, values.vector("centre") - half, values.vector("centre") + half, 0);
@@ -87,7 +87,7 @@ void add_uv_sphere(Scene& scene, const glm::dvec3& centre, double radius, std::u
   }
 }
 
-Scene make_sphere(const BuiltinValues& values) {
+Result<Scene> make_sphere(const BuiltinValues& values) {
   Scene scene;
   const bool smooth = values.integer("smooth") == 1;
   if (values.choice("kind") == "uv") {
@@ -103,7 +103,7 @@ Scene make_sphere(const BuiltinValues& values) {
 // The sheet of the Vulkan conformance tests for watertightness: the square [-1, 1]^2 cut into cells
 // of two triangles, inner vertices jittered. With a jitter of j cells, twice the area of a triangle
 // is at least (1 - 2j)^2 - (2j)^2 = 1 - 4j in cells, so that below 1/4 nothing folds.
-Scene make_sheet(const BuiltinValues& values) {
+Result<Scene> make_sheet(const BuiltinValues& values) {
   Scene scene;
   const std::uint32_t cells = std::max(values.integer("triangles") / 2, 1U);
   auto columns = static_cast<std::uint32_t>(std::sqrt(static_cast<double>(cells)));

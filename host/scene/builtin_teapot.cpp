@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <utility>
 
 #include <glm/ext/matrix_transform.hpp>
 #include <glm/geometric.hpp>
@@ -102,12 +103,12 @@ void add_tube(Scene& scene, const ControlTube& tube, std::size_t tessellation) {
   }
 }
 
-Scene make_single(const BuiltinValues& values) {
+Result<Scene> make_single(const BuiltinValues& values) {
   return make_teapot(values.integer("tessellation"));
 }
 
 // Three by three teapots on two floors, each turned by 40 degrees more.
-Scene make_eighteen(const BuiltinValues& values) {
+Result<Scene> make_eighteen(const BuiltinValues& values) {
   constexpr int kAcross = 3;
   constexpr int kFloors = 2;
   constexpr int kColours = 3;
@@ -126,8 +127,9 @@ Scene make_eighteen(const BuiltinValues& values) {
     placement.matrix =
         glm::rotate(placement.matrix, glm::radians(40.0 * number), glm::dvec3(0.0, 1.0, 0.0));
     placement.material = static_cast<std::uint32_t>(number % kColours);
-    // The options keep everything within float32 and the number of triangles.
-    static_cast<void>(append_scene(scene, teapot, placement, "teapots"));
+    if (auto placed = append_scene(scene, teapot, placement, "teapots"); !placed) {
+      return std::unexpected(std::move(placed.error()));
+    }
   }
   if (const double far = values.real("stray"); far > 0.0) {
     const std::uint32_t a = add_vertex(scene, {far, 0.0, 0.0});
@@ -139,7 +141,7 @@ Scene make_eighteen(const BuiltinValues& values) {
 }
 
 // A bowl of steps around a teapot that is small against it.
-Scene make_stadium(const BuiltinValues& values) {
+Result<Scene> make_stadium(const BuiltinValues& values) {
   constexpr std::uint32_t kSides = 24;
   constexpr std::uint32_t kSteps = 8;
   Scene scene;
@@ -172,8 +174,10 @@ Scene make_stadium(const BuiltinValues& values) {
   Placement placement;
   placement.matrix = glm::scale(glm::dmat4(1.0), glm::dvec3(2.0 * size / kTeapotWidth));
   placement.material = china;
-  static_cast<void>(
-      append_scene(scene, make_teapot(values.integer("tessellation")), placement, "stadium"));
+  const Scene teapot = make_teapot(values.integer("tessellation"));
+  if (auto placed = append_scene(scene, teapot, placement, "stadium"); !placed) {
+    return std::unexpected(std::move(placed.error()));
+  }
   scene.camera =
       Camera{glm::dvec3(1.5, 1.5, 4.0) * size, {0.0, 0.4 * size, 0.0}, {0.0, 1.0, 0.0}, 40.0};
   return scene;

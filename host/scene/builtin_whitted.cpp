@@ -1,5 +1,6 @@
 // Built-in scenes that show what Whitted's ray tracing can: mirror, glass, shadows.
 #include <cstddef>
+#include <utility>
 
 #include <glm/ext/matrix_transform.hpp>
 #include <glm/mat4x4.hpp>
@@ -27,19 +28,18 @@ void add_checker(Scene& scene, double half, int squares, std::uint32_t light, st
   }
 }
 
-void add_teapot(Scene& scene, std::uint32_t tessellation, const glm::dvec3& place, double size,
-                double turn_degrees, std::uint32_t material) {
+Result<void> add_teapot(Scene& scene, std::uint32_t tessellation, const glm::dvec3& place,
+                        double size, double turn_degrees, std::uint32_t material) {
   Placement placement;
   placement.matrix = glm::translate(glm::dmat4(1.0), place);
   placement.matrix =
       glm::rotate(placement.matrix, glm::radians(turn_degrees), glm::dvec3(0.0, 1.0, 0.0));
   placement.matrix = glm::scale(placement.matrix, glm::dvec3(size));
   placement.material = material;
-  // Options keep everything within float32 and far from the limit of triangles.
-  static_cast<void>(append_scene(scene, make_teapot(tessellation), placement, "teapot"));
+  return append_scene(scene, make_teapot(tessellation), placement, "teapot");
 }
 
-Scene make_demo(const BuiltinValues& values) {
+Result<Scene> make_demo(const BuiltinValues& values) {
   Scene scene;
   const std::uint32_t light = add_material(scene, matte("light", {0.82F, 0.80F, 0.75F}));
   const std::uint32_t dark = add_material(scene, matte("dark", {0.16F, 0.22F, 0.30F}));
@@ -48,7 +48,11 @@ Scene make_demo(const BuiltinValues& values) {
   const std::uint32_t glass = add_material(scene, glass_of(1.5F));
   const std::uint32_t balls = values.integer("subdivisions");
   add_checker(scene, 9.0, 18, light, dark);
-  add_teapot(scene, values.integer("tessellation"), {0.1, 0.0, -0.6}, 0.8, 25.0, china);
+  if (auto placed =
+          add_teapot(scene, values.integer("tessellation"), {0.1, 0.0, -0.6}, 0.8, 25.0, china);
+      !placed) {
+    return std::unexpected(std::move(placed.error()));
+  }
   add_icosphere(scene, {-2.6, 1.5, -2.6}, 1.5, balls, mirror, true);
   add_icosphere(scene, {2.1, 0.95, 1.6}, 0.95, balls, glass, true);
   scene.lights = {lamp({-5.0, 8.0, 6.0}, 0.65F), lamp({6.0, 6.0, 3.0}, 0.4F)};
@@ -59,7 +63,7 @@ Scene make_demo(const BuiltinValues& values) {
 
 // After the picture in T. Whitted, "An Improved Illumination Model for Shaded Display", 1980: a
 // glass ball before a mirror ball over a chequered floor.
-Scene make_whitted(const BuiltinValues& values) {
+Result<Scene> make_whitted(const BuiltinValues& values) {
   Scene scene;
   const std::uint32_t yellow = add_material(scene, matte("yellow", {0.90F, 0.85F, 0.20F}));
   const std::uint32_t red = add_material(scene, matte("red", {0.80F, 0.10F, 0.10F}));

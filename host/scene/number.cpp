@@ -49,8 +49,9 @@ Result<T> parse_real(std::string_view token, const char* type) {
     text.remove_prefix(1);
   }
   T value{};
-  const char* end = text.data() + text.size();
-  const auto result = std::from_chars(text.data(), end, value);
+  const char* begin = text.data();
+  const char* end = begin + text.size();
+  const auto result = std::from_chars(begin, end, value);
   if (result.ec == std::errc::invalid_argument || result.ptr != end) {
     return fail(ErrorKind::kInput, fmt::format("'{}' is not a number", shorten(token)));
   }
@@ -79,8 +80,9 @@ std::optional<std::int64_t> parse_integer(std::string_view token) {
     token.remove_prefix(1);
   }
   std::int64_t value = 0;
-  const char* end = token.data() + token.size();
-  const auto result = std::from_chars(token.data(), end, value);
+  const char* begin = token.data();
+  const char* end = begin + token.size();
+  const auto result = std::from_chars(begin, end, value);
   if (result.ec != std::errc{} || result.ptr != end) {
     return std::nullopt;
   }

@@ -40,7 +40,7 @@ std::vector<std::uint32_t> weld(const std::vector<glm::vec3>& positions) {
 
 // Unit normal of a triangle times its angle at each corner; zeros for one without area.
 std::array<glm::dvec3, 3> corner_normals(const Scene& scene, std::size_t triangle) {
-  std::array<glm::dvec3, 3> p;
+  std::array<glm::dvec3, 3> p{};
   for (std::size_t k = 0; k < 3; ++k) {
     p[k] = glm::dvec3(scene.positions[scene.triangles[triangle][k]]);
   }

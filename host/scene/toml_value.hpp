@@ -12,8 +12,8 @@
 
 namespace toml {
 inline namespace v3 {
-class node;
-class table;
+class node;   // NOLINT(readability-identifier-naming): the library's own names
+class table;  // NOLINT(readability-identifier-naming)
 }  // namespace v3
 }  // namespace toml
 

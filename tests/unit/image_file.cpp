@@ -5,6 +5,7 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <thread>
 
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -183,6 +184,29 @@ TEST_F(ImageFile, NewFilesHaveTheUsualMode) {
   ::umask(old_mask);
   ASSERT_TRUE(written);
   EXPECT_EQ(static_cast<unsigned>(fs::status(path).permissions()), 0640U);
+}
+
+TEST_F(ImageFile, ASymbolicLinkIsFollowedAndStays) {
+  const fs::path target = folder() / "target.grt";
+  const fs::path link = folder() / "link.grt";
+  fs::create_symlink("target.grt", link);
+  const Image image = must_build(random_scene(8, 3));
+  ASSERT_TRUE(write_image(image, link));
+  EXPECT_TRUE(fs::is_symlink(link));
+  EXPECT_EQ(content(target), serialize_image(image));
+}
+
+TEST_F(ImageFile, APipeIsWrittenToAndNotReplaced) {
+  const fs::path pipe = folder() / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  const Image image = must_build(random_scene(8, 3));
+  std::vector<std::byte> received;
+  std::thread reader([&] { received = content(pipe); });
+  const auto written = write_image(image, pipe);
+  reader.join();
+  ASSERT_TRUE(written) << written.error().message;
+  EXPECT_EQ(received, serialize_image(image));
+  EXPECT_TRUE(fs::is_fifo(pipe));
 }
 
 TEST(DescribeImage, ShowsEveryPe) {

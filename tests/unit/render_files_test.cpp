@@ -13,7 +13,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "host/render/output_file.hpp"
+#include "host/image/output_file.hpp"
 #include "host/render/picture.hpp"
 
 namespace gridrt {

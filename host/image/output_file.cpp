@@ -1,4 +1,4 @@
-#include "host/render/output_file.hpp"
+#include "host/image/output_file.hpp"
 
 #include <cerrno>
 #include <cstdlib>
@@ -43,6 +43,15 @@ std::string advice_for(int code) {
     default:
       return {};
   }
+}
+
+/// Makes a rename last: some file systems do not sync a directory, which is no failure of ours.
+void sync_folder(const fs::path& file) {
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  ::fsync(descriptor);
+  ::close(descriptor);
 }
 
 std::string name_of(int descriptor) { return fmt::format("/proc/self/fd/{}", descriptor); }
@@ -177,6 +186,7 @@ Result<void> OutputFile::commit() {
     return failure("write", code);
   }
   temporary_.clear();
+  if (!direct_) sync_folder(target_);
   return {};
 }
 
