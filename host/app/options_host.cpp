@@ -138,8 +138,7 @@ Result<void> read_texts(const HostTexts& texts, HostOptions& options) {
   read(texts.up, options.up, vector("--up"));
   read(texts.fov, options.fov, [](const std::string& text) -> Result<double> {
     auto fov = parse_number("--fov", text);
-    const bool in_range = fov && *fov > 0.0 && *fov < 180.0;
-    if (fov && !in_range) {
+    if (fov && !is_field_of_view(*fov)) {
       return fail(ErrorKind::kUsage, fmt::format("--fov {}: expected degrees in (0, 180)", text));
     }
     return fov;

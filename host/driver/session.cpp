@@ -116,9 +116,9 @@ Result<Session::Batch> Session::make_batch(const Work& work, std::size_t first) 
 }
 
 Result<void> Session::collect(Work& work) {
-  const Result<std::optional<Frame>> frame = connection_.receive();
-  if (!frame) return std::unexpected(frame.error());
-  if (*frame) return take(work, **frame);
+  const Result<std::optional<Frame>> received = connection_.receive();
+  if (!received) return std::unexpected(received.error());
+  if (const std::optional<Frame>& frame = *received) return take(work, *frame);
   // Silence: whatever is still open was lost on the way there or back.
   for (Batch& batch : work.in_flight) {
     if (batch.done) continue;

@@ -10,8 +10,8 @@ Accepted<Engine> Engine::assemble(TraversalMemory traversal, std::vector<std::op
       return refuse(protocol::ErrorCode::kBadSection,
                     section_detail(protocol::SectionKind::kCells));
     }
-    if (!pes[cell.pe]) continue;
-    if (std::uint64_t{cell.first} + cell.count > pes[cell.pe]->references()) {
+    const std::optional<Pe>& owner = pes[cell.pe];
+    if (owner && std::uint64_t{cell.first} + cell.count > owner->references()) {
       return refuse(protocol::ErrorCode::kBadSection,
                     section_detail(protocol::SectionKind::kReferences, cell.pe));
     }

@@ -56,7 +56,7 @@ Result<PinholeCamera> PinholeCamera::create(const Camera& camera, int width, int
   if (!is_finite(camera.eye)) return refuse("eye " + text(camera.eye) + " is not finite");
   if (!is_finite(camera.look)) return refuse("look " + text(camera.look) + " is not finite");
   if (!is_finite(camera.up)) return refuse("up " + text(camera.up) + " is not finite");
-  if (!(camera.fov_degrees > 0.0 && camera.fov_degrees < 180.0)) {
+  if (!is_field_of_view(camera.fov_degrees)) {
     return refuse(
         fmt::format("a field of view of {} degrees is outside (0, 180)", camera.fov_degrees));
   }

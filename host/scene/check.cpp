@@ -78,7 +78,7 @@ Result<void> check_camera(const Camera& camera, const std::string& name) {
       !std::isfinite(camera.fov_degrees)) {
     return fail(ErrorKind::kInput, fmt::format("{}: the camera has a value not finite", name));
   }
-  if (!(camera.fov_degrees > 0.0 && camera.fov_degrees < 180.0)) {
+  if (!is_field_of_view(camera.fov_degrees)) {
     return fail(
         ErrorKind::kInput,
         fmt::format("{}: the camera's field of view is {} degrees", name, camera.fov_degrees),

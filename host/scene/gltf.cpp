@@ -190,14 +190,12 @@ class GltfReader {
   void place_node(const JsonNode& node, const glm::dmat4& transform) {
     if (const auto mesh = node.find("mesh")) {
       const std::size_t index = mesh->index(meshes_.size(), "meshes");
-      if (!meshes_[index]) {
-        meshes_[index] = read_mesh(document_.root().at("meshes")[index]);
-      }
+      std::optional<Scene>& part = meshes_[index];
+      if (!part) part = read_mesh(document_.root().at("meshes")[index]);
       skinned_ = skinned_ || node.find("skin").has_value();
       Placement placement;
       placement.matrix = transform;
-      require(append_scene(scene_, *meshes_[index], placement,
-                           fmt::format("{}: {}", name_, node.path())));
+      require(append_scene(scene_, *part, placement, fmt::format("{}: {}", name_, node.path())));
     }
     if (const auto camera = node.find("camera")) {
       place_camera(document_.element("cameras", *camera), transform);
@@ -214,7 +212,7 @@ class GltfReader {
     const auto lights =
         extensions ? extensions->find("KHR_lights_punctual", "lights") : std::nullopt;
     const std::size_t index = reference.index(lights ? lights->size() : 0, "lights");
-    scene_.lights.push_back(gltf_light((*lights)[index], transform));
+    if (lights) scene_.lights.push_back(gltf_light((*lights)[index], transform));
   }
 
   // The first perspective camera is the scene's.
@@ -226,7 +224,8 @@ class GltfReader {
     }
     const double fov = perspective->at("yfov").number();
     const glm::dvec3 forward = -glm::dvec3(transform[2]);
-    if (!(fov > 0.0 && fov < std::numbers::pi) || !(glm::length(forward) > 0.0)) {
+    const bool has_view = fov > 0.0 && fov < std::numbers::pi && glm::length(forward) > 0.0;
+    if (!has_view) {
       perspective->refuse_value("has no view: yfov is not in (0, pi), or its node is flat");
     }
     Camera result;

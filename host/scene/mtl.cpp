@@ -106,7 +106,7 @@ class MtlReader {
     }
     if (keyword == "newmtl") {
       close_entry();
-      entry_.emplace();
+      entry_ = Entry{};
       entry_->name = std::string(trim(line));
       return {};
     }
@@ -120,7 +120,7 @@ class MtlReader {
     if (!entry_) {
       return bad(fmt::format("'{}' before any newmtl", shorten(keyword)), "is this an MTL file?");
     }
-    return property(keyword, line);
+    return property(*entry_, keyword, line);
   }
 
   static bool is_texture(std::string_view keyword) {
@@ -129,39 +129,38 @@ class MtlReader {
            keyword == "refl";
   }
 
-  Result<void> property(std::string_view keyword, std::string_view line) {
+  Result<void> property(Entry& entry, std::string_view keyword, std::string_view line) {
     if (keyword == "Ka") {
-      entry_->ambient.emplace(0.0F);
-      return colour(line, *entry_->ambient, 1.0F);
+      return colour(line, entry.ambient.emplace(0.0F), 1.0F);
     }
     if (keyword == "Kd") {
-      return colour(line, entry_->diffuse, 1.0F);
+      return colour(line, entry.diffuse, 1.0F);
     }
     if (keyword == "Ks") {
-      return colour(line, entry_->specular, 1.0F);
+      return colour(line, entry.specular, 1.0F);
     }
     if (keyword == "Ke") {
-      return colour(line, entry_->emission, kMaxEmission);
+      return colour(line, entry.emission, kMaxEmission);
     }
     if (keyword == "Tf") {
-      return colour(line, entry_->filter, 1.0F);
+      return colour(line, entry.filter, 1.0F);
     }
     if (keyword == "Ns") {
-      return number(line, entry_->shininess, 0.0F, kMaxShininess);
+      return number(line, entry.shininess, 0.0F, kMaxShininess);
     }
     if (keyword == "Ni") {
-      return number(line, entry_->ior, kMinIor, kMaxIor);
+      return number(line, entry.ior, kMinIor, kMaxIor);
     }
     if (keyword == "d") {
       std::string_view rest = line;
       if (next_token(rest) == "-halo") {
         line = rest;
       }
-      return number(line, entry_->opacity, 0.0F, 1.0F);
+      return number(line, entry.opacity, 0.0F, 1.0F);
     }
     if (keyword == "Tr") {
-      const auto ok = number(line, entry_->opacity, 0.0F, 1.0F);
-      entry_->opacity = 1.0F - entry_->opacity;
+      const auto ok = number(line, entry.opacity, 0.0F, 1.0F);
+      entry.opacity = 1.0F - entry.opacity;
       return ok;
     }
     if (keyword == "illum") {
@@ -169,7 +168,7 @@ class MtlReader {
       if (!model || *model < 0 || *model > kLastModel) {
         return bad("illum is not a whole number from 0 to 10");
       }
-      entry_->model = static_cast<int>(*model);
+      entry.model = static_cast<int>(*model);
       return {};
     }
     return bad(fmt::format("unknown statement '{}'", shorten(keyword)),

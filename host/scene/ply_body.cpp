@@ -85,7 +85,7 @@ Result<std::int64_t> PlyBody::integer(const PlyValue& value) const {
 }
 
 Result<std::uint64_t> PlyBody::list_length(const PlyProperty& property) {
-  const auto value = next(*property.count_type);
+  const auto value = next(property.count_type.value_or(property.type));
   if (!value) {
     return std::unexpected(value.error());
   }

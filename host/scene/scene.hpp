@@ -44,6 +44,9 @@ struct Camera {
   double fov_degrees = 45.0;
 };
 
+/// True for an angle that a Camera may have; not for NaN.
+constexpr bool is_field_of_view(double degrees) { return degrees > 0.0 && degrees < 180.0; }
+
 /// Triangles with everything that shading needs. A triangle's index is its id: file order after
 /// splitting polygons into fans, degenerate ones included.
 struct Scene {

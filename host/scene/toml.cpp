@@ -94,7 +94,7 @@ class TomlReader {
     }
     if (const auto fov = table.find("fov")) {
       camera.fov_degrees = fov->number();
-      if (!(camera.fov_degrees > 0.0 && camera.fov_degrees < 180.0)) {
+      if (!is_field_of_view(camera.fov_degrees)) {
         fov->refuse_value(
             fmt::format("is {}, but must be between 0 and 180 degrees", camera.fov_degrees));
       }
