@@ -18,8 +18,7 @@ TEST_P(Contract, RaysBeforeAnImageAreAnError) {
   const Scene scene = awkward_scene(20);
   const auto image = build_image(scene, plain());
   ASSERT_TRUE(image);
-  const auto loaded = device->load(*image);
-  if (!loaded) GTEST_SKIP() << loaded.error().message;
+  if (!loads(*device, *image)) return;
   const auto segments = awkward_segments(scene, kDefaultBits, 21);
   expect_same(trace(*device, segments, Query::kClosestHit),
               reference(scene, kDefaultBits, segments, Query::kClosestHit), "after an error");
@@ -29,7 +28,7 @@ TEST_P(Contract, AsManyHitsAsSegmentsAreAskedFor) {
   const auto device = open();
   const auto image = build_image(awkward_scene(22), plain());
   ASSERT_TRUE(device && image);
-  if (const auto loaded = device->load(*image); !loaded) GTEST_SKIP() << loaded.error().message;
+  if (!loads(*device, *image)) return;
   std::vector<Segment> segments(3);
   std::vector<Hit> hits(2);
   EXPECT_FALSE(device->trace(segments, Query::kClosestHit, hits));
@@ -40,7 +39,7 @@ TEST_P(Contract, AnImageBeyondTheDeviceIsRefusedBeforeAnythingIsSent) {
   const Scene scene = awkward_scene(23);
   auto image = build_image(scene, plain());
   ASSERT_TRUE(device && image);
-  const auto fits = device->load(*image);
+  if (!loads(*device, *image)) return;
   const auto before = device->counters();
   ASSERT_TRUE(before);
   Image large = *image;
@@ -54,7 +53,6 @@ TEST_P(Contract, AnImageBeyondTheDeviceIsRefusedBeforeAnythingIsSent) {
   const auto after = device->counters();
   ASSERT_TRUE(after);
   EXPECT_EQ(after->bytes_out, before->bytes_out);
-  if (!fits) GTEST_SKIP() << fits.error().message;
   // A refused image leaves none loaded: no answers of the scene before pass for those of this one.
   Segment segment;
   segment.p1 = {1, 1, 1};
@@ -72,7 +70,7 @@ TEST_P(Contract, ADamagedImageIsRefusedAndTheNextOneLoads) {
   const auto expected = reference(scene, kDefaultBits, segments, Query::kClosestHit);
   const auto device = open();
   ASSERT_TRUE(device);
-  if (const auto loaded = device->load(*image); !loaded) GTEST_SKIP() << loaded.error().message;
+  if (!loads(*device, *image)) return;
   // A cell's list that reaches beyond its owner's references.
   Image damaged = *image;
   for (ImageSection& section : damaged.sections) {
@@ -91,7 +89,7 @@ TEST_P(Contract, ASecondImageReplacesTheFirst) {
     const Scene scene = awkward_scene(seed);
     const auto image = build_image(scene, plain(12 + static_cast<int>(seed % 4)));
     ASSERT_TRUE(image);
-    if (const auto loaded = device->load(*image); !loaded) GTEST_SKIP() << loaded.error().message;
+    if (!loads(*device, *image)) return;
     const int bits = image->header.bits;
     const auto segments = awkward_segments(scene, bits, seed);
     expect_same(trace(*device, segments, Query::kClosestHit),
@@ -105,7 +103,7 @@ TEST_P(Contract, ASceneWithoutTrianglesIsAnsweredWithMisses) {
   empty.materials.emplace_back();
   const auto image = build_image(empty, plain());
   ASSERT_TRUE(device && image);
-  if (const auto loaded = device->load(*image); !loaded) GTEST_SKIP() << loaded.error().message;
+  if (!loads(*device, *image)) return;
   std::vector<Segment> segments(5);
   for (int i = 0; i < 5; ++i) segments[static_cast<std::size_t>(i)].p1 = {i % 5, 4, 1};
   for (const Hit& hit : trace(*device, segments, Query::kClosestHit)) {
@@ -117,7 +115,7 @@ TEST_P(Contract, RaysOutsideTheBoxAreRefused) {
   const auto device = open();
   const auto image = build_image(awkward_scene(26), plain());
   ASSERT_TRUE(device && image);
-  if (const auto loaded = device->load(*image); !loaded) GTEST_SKIP() << loaded.error().message;
+  if (!loads(*device, *image)) return;
   std::vector<Segment> segments(4);
   for (Segment& s : segments) s.p1 = {1, 1, 1};
   segments[2].p1 = image->lattice().box() + 1;

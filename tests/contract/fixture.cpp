@@ -85,6 +85,18 @@ std::unique_ptr<Device> Contract::open(DeviceOptions options) {
   return std::move(*device);
 }
 
+bool Contract::loads(Device& device, const Image& image) {
+  const auto loaded = device.load(image);
+  if (loaded) return true;
+  const Error& error = loaded.error();
+  if (error.kind == ErrorKind::kLimit || error.kind == ErrorKind::kUnsupported) {
+    [&] { GTEST_SKIP() << error.message; }();
+  } else {
+    ADD_FAILURE() << error.message;
+  }
+  return false;
+}
+
 std::vector<Hit> Contract::answers(const DeviceOptions& options, const Image& image,
                                    std::span<const Segment> segments, Query query,
                                    std::string& refused) {

@@ -40,6 +40,10 @@ class Contract : public testing::TestWithParam<std::string> {
   /// The device under test; a failure fails the test.
   static std::unique_ptr<Device> open(DeviceOptions options = {});
 
+  /// True if the device takes the image. One that it cannot hold (kUnsupported or kLimit) marks the
+  /// test as skipped; any other error fails it. On false the test returns.
+  static bool loads(Device& device, const Image& image);
+
   /// Opens, loads and traces. Nothing where the device does not take such an image (kUnsupported
   /// or kLimit, refused before anything is sent); `refused` says why.
   static std::vector<Hit> answers(const DeviceOptions& options, const Image& image,
