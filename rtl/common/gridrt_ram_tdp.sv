@@ -1,0 +1,88 @@
+// Block memory with two ports that each read every clock; port A writes too (while loading). Read
+// data comes one clock after the address, or two with OUTPUT_REGISTER. Depths above BANK are cut
+// into banks, so that no bits of the device's block memories are left unused.
+module gridrt_ram_tdp #(
+    parameter int unsigned WIDTH = 18,
+    parameter int unsigned DEPTH = 1024,
+    parameter int unsigned BANK = DEPTH,  // a power of two where it is below DEPTH
+    parameter bit OUTPUT_REGISTER = 1'b0,
+    localparam int unsigned ADDRESS_W = (DEPTH > 1) ? $clog2(DEPTH) : 1
+) (
+    input  logic                 clk_i,
+    input  logic                 a_write_i,
+    input  logic                 a_enable_i,
+    input  logic [ADDRESS_W-1:0] a_address_i,
+    input  logic [    WIDTH-1:0] a_data_i,
+    output logic [    WIDTH-1:0] a_data_o,
+    input  logic                 b_enable_i,
+    input  logic [ADDRESS_W-1:0] b_address_i,
+    output logic [    WIDTH-1:0] b_data_o
+);
+  localparam int unsigned BANKS = (DEPTH + BANK - 1) / BANK;
+  localparam int unsigned LOW_W = (BANK > 1) ? $clog2(BANK) : 1;
+
+  if (WIDTH < 1 || DEPTH < 1) begin : gen_illegal
+    $error("gridrt_ram_tdp: WIDTH and DEPTH must be positive");
+  end
+  if (BANKS > 1 && (1 << LOW_W) != BANK) begin : gen_illegal_bank
+    $error("gridrt_ram_tdp: BANK must be a power of two");
+  end
+
+  logic [BANKS-1:0][WIDTH-1:0] a_bank, b_bank;
+  logic [WIDTH-1:0] a_now, b_now;
+
+  for (genvar i = 0; i < BANKS; i++) begin : gen_bank
+    logic [WIDTH-1:0] memory[BANK];
+    logic [LOW_W-1:0] a_low, b_low;
+    logic a_here;
+    assign a_low = LOW_W'(a_address_i);
+    assign b_low = LOW_W'(b_address_i);
+    if (BANKS > 1) begin : gen_select
+      assign a_here = (a_address_i >> LOW_W) == ADDRESS_W'(i);
+    end else begin : gen_always
+      assign a_here = 1'b1;
+    end
+    always_ff @(posedge clk_i) begin
+      if (a_enable_i) begin
+        if (a_write_i && a_here) memory[a_low] <= a_data_i;
+        else a_bank[i] <= memory[a_low];
+      end
+    end
+    always_ff @(posedge clk_i) begin
+      if (b_enable_i) b_bank[i] <= memory[b_low];
+    end
+  end
+
+  if (BANKS > 1) begin : gen_banks
+    logic [ADDRESS_W-1:0] a_selected, b_selected;
+    always_ff @(posedge clk_i) begin
+      if (a_enable_i) a_selected <= a_address_i >> LOW_W;
+      if (b_enable_i) b_selected <= b_address_i >> LOW_W;
+    end
+    always_comb begin
+      a_now = a_bank[0];
+      b_now = b_bank[0];
+      for (int unsigned i = 1; i < BANKS; i++) begin
+        if (a_selected == ADDRESS_W'(i)) a_now = a_bank[i];
+        if (b_selected == ADDRESS_W'(i)) b_now = b_bank[i];
+      end
+    end
+  end else begin : gen_single
+    assign a_now = a_bank[0];
+    assign b_now = b_bank[0];
+  end
+
+  if (OUTPUT_REGISTER) begin : gen_register
+    // The register follows the enables by one clock.
+    logic a_enable_q, b_enable_q;
+    always_ff @(posedge clk_i) begin
+      a_enable_q <= a_enable_i;
+      b_enable_q <= b_enable_i;
+      if (a_enable_q) a_data_o <= a_now;
+      if (b_enable_q) b_data_o <= b_now;
+    end
+  end else begin : gen_direct
+    assign a_data_o = a_now;
+    assign b_data_o = b_now;
+  end
+endmodule

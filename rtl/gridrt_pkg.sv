@@ -1,0 +1,67 @@
+// Types and widths that the engine's blocks share. Widths that depend on the lattice bits B are
+// parameters of the modules; what is here holds for every configuration.
+package gridrt_pkg;
+
+  // A design uses the constants that it needs.
+  /* verilator lint_off UNUSEDPARAM */
+  localparam int unsigned MAX_B = 17;  // lattice bits of a coordinate in a ray record
+  localparam int unsigned MAX_PES = 4;
+  localparam int unsigned PE_W = 2;  // number of a PE
+  localparam int unsigned SLOT_W = 6;  // number of a ray slot, at most 64 slots
+  localparam int unsigned DIST_W = 18;  // distance from P0 along the dominant axis, lattice steps
+  localparam int unsigned KEY_BITS = 24;  // quotient = floor(2^24 tn / det)
+  localparam int unsigned Q_W = 25;  // a quotient, 0 .. 2^24
+  localparam int unsigned ID_W = 20;  // local triangle id; all ones: none
+  localparam int unsigned REF_W = 14;  // index of a reference in its PE's memory
+  localparam int unsigned LIST_W = 10;  // references of one voxel
+  localparam int unsigned TRI_W = 12;  // index of a triangle in its PE's memory
+  localparam int unsigned VERT_W = 12;  // index of a vertex in its PE's memory
+  localparam int unsigned CELL_W = 13;  // index of a cell record
+  localparam int unsigned BLOCK_W = 12;  // index of a 2x2x2 block
+  localparam int unsigned AXIS_W = 10;  // voxels along an axis, 1 .. 512
+  localparam int unsigned FRACTION = 12;  // bits behind the point of a lateral position
+  localparam logic [ID_W-1:0] NO_ID = '1;
+  /* verilator lint_on UNUSEDPARAM */
+
+  // A voxel to be tested for a ray: references [first, first + count) of the PE's memory.
+  typedef struct packed {
+    logic [SLOT_W-1:0] slot;
+    logic [REF_W-1:0]  first;
+    logic [LIST_W-1:0] count;  // >= 1
+    logic [5:0]        halves;  // halves of the voxel that the ray touches: bit 2 axis + half
+    logic [DIST_W-1:0] enter;  // where the ray enters the voxel's slab
+  } task_t;
+
+  // What a PE has found, in the order of its tests.
+  typedef struct packed {
+    logic [SLOT_W-1:0] slot;
+    logic              last;  // the task of this slot is complete with this event
+    logic              hit;  // quotient, id and limit hold a hit
+    logic [Q_W-1:0]    quotient;  // 0 for any-hit rays
+    logic [ID_W-1:0]   id;  // 0 for any-hit rays
+    logic [DIST_W-1:0] limit;  // slabs entered beyond it hold no smaller key
+  } event_t;
+
+  // A hit lowers the limit of a ray: whatever is entered beyond it is cancelled.
+  typedef struct packed {
+    logic              valid;
+    logic [SLOT_W-1:0] slot;
+    logic [DIST_W-1:0] limit;
+  } interrupt_t;
+
+  // A ray has been given a slot.
+  typedef struct packed {
+    logic              valid;
+    logic [SLOT_W-1:0] slot;
+  } slot_event_t;
+
+  // One record of an image on its way to the memories (kind: section_kind_e of the protocol).
+  typedef struct packed {
+    logic        valid;
+    logic [7:0]  kind;
+    logic [1:0]  pe;
+    logic [13:0] index;
+    logic [55:0] data;  // the record, from bit 0 up
+  } load_t;
+
+endpackage
