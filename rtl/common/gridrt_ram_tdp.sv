@@ -32,6 +32,8 @@ module gridrt_ram_tdp #(
   logic [WIDTH-1:0] a_now, b_now;
 
   for (genvar i = 0; i < BANKS; i++) begin : gen_bank
+    // Nothing reads while the memory is loaded, so no logic is wanted for that case.
+    (* no_rw_check *)
     logic [WIDTH-1:0] memory[BANK];
     logic [LOW_W-1:0] a_low, b_low;
     logic a_here;
