@@ -42,6 +42,20 @@ package gridrt_pkg;
     logic [DIST_W-1:0] limit;  // slabs entered beyond it hold no smaller key
   } event_t;
 
+  // The voxels of one 2x2x2 block that a ray meets, from a traversal unit to an expander. A voxel is
+  // a bit of the block, x + 2 y + 4 z in the grid's own (not mirrored) axes. Voxels of the near slab
+  // come before those of the far one; within a slab any order is right.
+  typedef struct packed {
+    logic [SLOT_W-1:0] slot;
+    logic [CELL_W-1:0] base;  // cell record of the block's first occupied voxel
+    logic [7:0] occ;  // occupied voxels: the record of voxel v is base + popcount(occ below bit v)
+    logic [7:0] cand;  // voxels to test: met by the ray and occupied, a part of occ, not empty
+    logic [7:0] front;  // voxels in the slab (of the dominant axis) that the ray enters first
+    logic [7:0][5:0] halves;  // per voxel in cand: halves that the ray touches, bit 2 axis + half
+    logic [DIST_W-1:0] near_enter;  // where the ray enters the near slab, 0 if it starts in it
+    logic [DIST_W-1:0] far_enter;  // where it enters the far slab
+  } bundle_t;
+
   // A hit lowers the limit of a ray: whatever is entered beyond it is cancelled.
   typedef struct packed {
     logic              valid;
