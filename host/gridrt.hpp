@@ -3,6 +3,7 @@
 // pictures) use the headers below it, which are included or installed beside this one.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <span>
 #include <string>
@@ -11,6 +12,7 @@
 
 #include "hal/error.hpp"
 #include "host/driver/device.hpp"
+#include "host/driver/image_options.hpp"
 #include "host/grid/lattice.hpp"
 #include "host/grid/segment.hpp"
 #include "host/image/image.hpp"
@@ -28,10 +30,12 @@ class Tracer {
   static Result<Tracer> open(const Scene& scene, const DeviceOptions& device = {},
                              ImageOptions image = {}) {
     image.with_scene = false;
-    auto built = build_image(scene, image);
-    if (!built) return std::unexpected(std::move(built.error()));
     auto opened = open_device(device);
     if (!opened) return std::unexpected(std::move(opened.error()));
+    const protocol::CapabilitiesReport& capabilities = (*opened)->capabilities();
+    image.pes = std::min<int>(image.pes, capabilities.pes);
+    auto built = build_image(scene, options_for(image, capabilities));
+    if (!built) return std::unexpected(std::move(built.error()));
     if (auto loaded = (*opened)->load(*built); !loaded) {
       return std::unexpected(std::move(loaded.error()));
     }

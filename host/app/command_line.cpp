@@ -24,8 +24,9 @@ void add_cut_options(CLI::App& app, CutTexts& texts) {
                  "how voxels are dealt to them: boxes (default), contiguous or voxel")
       ->group(kGroup)
       ->type_name("NAME");
-  app.add_option("--layout", texts.layout,
-                 "record layout: wide (default) or compact, the board's, with its limits")
+  app.add_option(
+         "--layout", texts.layout,
+         "record layout: wide or compact, the board's, with its limits (default: the device's)")
       ->group(kGroup)
       ->type_name("compact|wide");
 }

@@ -97,7 +97,7 @@ Result<void> HostRun::open() {
 
 Result<void> HostRun::load() {
   progress_.phase("loading and building");
-  auto prepared = prepare_scene(options_.scene, options_.cut);
+  auto prepared = prepare_scene(options_.scene, options_.cut, device_->capabilities());
   if (!prepared) return std::unexpected(prepared.error());
   prepared_ = std::move(*prepared);
   progress_.clear();

@@ -1,5 +1,6 @@
 #include "host/app/prepared_scene.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -8,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "host/app/parse.hpp"
+#include "host/driver/image_options.hpp"
 #include "host/image/image_file.hpp"
 #include "host/scene/load.hpp"
 
@@ -74,7 +76,8 @@ ImageOptions image_options(const CutOptions& cut, bool with_scene) {
   return options;
 }
 
-Result<PreparedScene> prepare_scene(const std::string& spec, const CutOptions& cut) {
+Result<PreparedScene> prepare_scene(const std::string& spec, const CutOptions& cut,
+                                    const protocol::CapabilitiesReport& capabilities) {
   PreparedScene prepared;
   const auto start = Clock::now();
   const bool is_image = is_image_path(spec);
@@ -90,7 +93,9 @@ Result<PreparedScene> prepare_scene(const std::string& spec, const CutOptions& c
   const auto loaded = Clock::now();
   prepared.load_seconds = seconds_between(start, loaded);
   if (!is_image) {
-    auto image = build_image(prepared.scene, image_options(cut, false));
+    ImageOptions options = options_for(image_options(cut, false), capabilities);
+    if (!cut.pes) options.pes = std::min<int>(options.pes, capabilities.pes);
+    auto image = build_image(prepared.scene, options);
     if (!image) return std::unexpected(image.error());
     prepared.image = std::move(*image);
   }

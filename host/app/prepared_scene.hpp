@@ -23,9 +23,11 @@ struct PreparedScene {
 /// True for the path of an image file (.grt).
 bool is_image_path(const std::string& spec);
 
-/// Loads any SCENE. Options that contradict what a .grt was made with are refused (kUsage); other
-/// errors are those of load_scene, build_image and read_image.
-Result<PreparedScene> prepare_scene(const std::string& spec, const CutOptions& cut);
+/// Loads any SCENE and cuts it for a device of these capabilities. Options that contradict what a
+/// .grt was made with are refused (kUsage); other errors are those of load_scene, build_image and
+/// read_image.
+Result<PreparedScene> prepare_scene(const std::string& spec, const CutOptions& cut,
+                                    const protocol::CapabilitiesReport& capabilities);
 
 /// The image options that stand for `cut`.
 ImageOptions image_options(const CutOptions& cut, bool with_scene);

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -34,6 +35,9 @@ struct DeviceOptions {
   std::size_t rays_per_frame = 32768;  ///< batch size on the link, >= 1
   int frames_in_flight = 4;            ///< >= 1
   int timeout_ms = 10000;              ///< longest wait for one answer
+  /// Software PEs that say, and keep to, less than they could: for tests. The device `seq-board`
+  /// is `seq` with board_capabilities().
+  std::optional<protocol::CapabilitiesReport> capabilities;
 };
 
 /// What a device has done since it was opened.
@@ -64,6 +68,9 @@ class Device {
 
   virtual Result<DeviceCounters> counters() = 0;
 
+  /// What the device says it can do.
+  [[nodiscard]] virtual const protocol::CapabilitiesReport& capabilities() const = 0;
+
   /// The name that was opened, with `auto` resolved.
   [[nodiscard]] virtual std::string name() const = 0;
 };
@@ -72,7 +79,8 @@ class Device {
 /// build does not have (the advice lists those it has).
 Result<std::unique_ptr<Device>> open_device(const DeviceOptions& options);
 
-/// Names that open_device accepts in this build, `auto` left out; contract tests run on each.
+/// Names that open_device accepts in this build; contract tests run on each. Left out: `auto`, and
+/// `seq-board`, which is there for tests.
 std::vector<std::string> built_in_devices();
 
 }  // namespace gridrt

@@ -12,8 +12,12 @@
 namespace gridrt {
 namespace {
 
+constexpr const char* kBoardInSoftware = "seq-board";
+
 Result<std::unique_ptr<Device>> open_software(const DeviceOptions& options, int threads) {
-  SoftwareDeviceOptions software{options.name, threads};
+  SoftwareDeviceOptions software{.name = options.name, .threads = threads};
+  if (options.name == kBoardInSoftware) software.capabilities = board_capabilities();
+  if (options.capabilities) software.capabilities = *options.capabilities;
   auto transport =
       std::make_unique<LoopbackTransport>(std::make_unique<SoftwareDevice>(std::move(software)));
   Result<std::unique_ptr<Session>> session = Session::open(std::move(transport), options);
@@ -39,7 +43,7 @@ Result<std::unique_ptr<Device>> open_device(const DeviceOptions& options) {
                 fmt::format("device '{}' is not built in yet", chosen.name),
                 fmt::format("use one of: auto, {}", available));
   }
-  if (std::ranges::count(built_in_devices(), chosen.name) == 0) {
+  if (std::ranges::count(built_in_devices(), chosen.name) == 0 && chosen.name != kBoardInSoftware) {
     return fail(ErrorKind::kUsage, fmt::format("device '{}' is not known", chosen.name),
                 fmt::format("use one of: auto, {}", available));
   }

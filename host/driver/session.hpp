@@ -26,6 +26,9 @@ class Session final : public Device {
   Result<void> trace(std::span<const Segment> segments, Query query, std::span<Hit> hits) override;
   Result<DeviceCounters> counters() override;
   [[nodiscard]] std::string name() const override { return name_; }
+  [[nodiscard]] const protocol::CapabilitiesReport& capabilities() const override {
+    return capabilities_;
+  }
 
   /// The connection; for tests.
   [[nodiscard]] Connection& connection() { return connection_; }

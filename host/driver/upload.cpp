@@ -93,8 +93,10 @@ Result<void> check_fits(const Image& image, const protocol::CapabilitiesReport& 
   const auto layout = static_cast<protocol::Layout>(h.layout);
   if (((capabilities.layouts >> h.layout) & 1U) == 0) {
     return fail(ErrorKind::kUnsupported,
-                fmt::format("the device does not speak the layout '{}'", protocol::name(layout)),
-                "build the image with the other --layout");
+                fmt::format("the device does not take images of the {} layout",
+                            layout == protocol::Layout::kCompact ? "compact" : "wide"),
+                layout == protocol::Layout::kCompact ? "make the image anew with --layout wide"
+                                                     : "make the image anew with --layout compact");
   }
   const auto refuse = [](const char* what, std::uint64_t have, std::uint64_t most,
                          const char* advice) {

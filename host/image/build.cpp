@@ -48,8 +48,8 @@ Result<Image> build_with_grid(const LocalTriangles& local, Cut cut, const VoxelG
   return pack_image(local, cut);
 }
 
-/// The finest of a few grids that the layout can hold. Only the compact layout has limits that a
-/// chosen grid can exceed.
+/// The finest of a few grids that the memories can hold. Those of the wide layout are never
+/// exceeded by a chosen grid.
 Result<Image> build_with_chosen_grid(const LocalTriangles& local, const Cut& cut) {
   Result<Image> image = fail(ErrorKind::kInternal, "no grid was tried");
   double density = kDensity;
@@ -58,7 +58,7 @@ Result<Image> build_with_chosen_grid(const LocalTriangles& local, const Cut& cut
     if (!grid) return std::unexpected(grid.error());
     image = build_with_grid(local, cut, *grid);
     if (image || image.error().kind != ErrorKind::kLimit ||
-        cut.layout != protocol::Layout::kCompact) {
+        cut.memory == memory_sizes(protocol::Layout::kWide)) {
       break;
     }
   }
@@ -73,6 +73,8 @@ Result<Image> build_image(const Scene& scene, const ImageOptions& options) {
   cut.pes = options.pes;
   cut.layout = options.layout == protocol::Layout::kCompact ? protocol::Layout::kCompact
                                                             : protocol::Layout::kWide;
+  cut.memory = memory_sizes(cut.layout);
+  if (options.memory) cut.memory = smaller_of(cut.memory, *options.memory);
   if (options.pes < 1 || options.pes > kMaxPes) {
     return fail(ErrorKind::kUsage, fmt::format("{} PEs asked for", options.pes),
                 fmt::format("choose between 1 and {}", kMaxPes));
@@ -86,10 +88,11 @@ Result<Image> build_image(const Scene& scene, const ImageOptions& options) {
   cut.lattice = *lattice;
 
   const LocalTriangles local = make_local(scene, *lattice);
-  if (auto good = check_scene_limits(cut.layout, options.bits, options.pes, local.triangles.size());
-      !good) {
-    return std::unexpected(std::move(good.error()));
+  auto good = check_widths(cut.layout, options.bits, options.pes);
+  if (good) {
+    good = check_scene_limits(cut.layout, cut.memory, options.pes, local.triangles.size());
   }
+  if (!good) return std::unexpected(std::move(good.error()));
   Result<Image> image;
   if (options.grid) {
     const auto grid = make_grid(*lattice, local.triangles.size(), options.grid);

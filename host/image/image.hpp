@@ -12,6 +12,7 @@
 #include "host/grid/lattice.hpp"
 #include "host/grid/partition.hpp"
 #include "host/grid/voxel_grid.hpp"
+#include "host/image/memory_sizes.hpp"
 #include "host/scene/scene.hpp"
 
 namespace gridrt {
@@ -22,10 +23,11 @@ struct ImageOptions {
   std::optional<glm::ivec3> grid;  ///< none: chosen from the scene
   int pes = 4;
   Mapping mapping = Mapping::kBoxes;
-  /// kCompact has the board's field widths and memory sizes, kWide is for software; none: compact
-  /// is not asked for, wide is taken.
-  protocol::Layout layout = protocol::Layout::kWide;
-  bool with_scene = true;  ///< keep materials, normals, lights and camera in the image
+  /// kCompact has the board's field widths and memory sizes, kWide is for software; kNone: what
+  /// the device prefers (options_for, host/driver/image_options.hpp), and wide without one.
+  protocol::Layout layout = protocol::Layout::kNone;
+  std::optional<MemorySizes> memory;  ///< of the device; none: the most that the layout allows
+  bool with_scene = true;             ///< keep materials, normals, lights and camera in the image
 };
 
 /// One section: its directory entry and its bytes.

@@ -37,18 +37,18 @@ std::uint64_t most_local_ids(protocol::Layout layout) {
   return (std::uint64_t{1} << protocol::layout_limits(layout).id_bits) - 1;
 }
 
-Result<void> check_limits(protocol::Layout layout, const ImageUse& use) {
+Result<void> check_limits(protocol::Layout layout, const MemorySizes& memory, const ImageUse& use) {
   const protocol::LayoutLimits limits = protocol::layout_limits(layout);
   Excess excess;
-  excess.check(use.blocks, limits.max_blocks, "blocks of 2x2x2 voxels", "");
-  excess.check(use.cells, limits.max_cells, "voxels with triangles", "");
+  excess.check(use.blocks, memory.blocks, "blocks of 2x2x2 voxels", "");
+  excess.check(use.cells, memory.cells, "voxels with triangles", "");
   excess.check(use.longest_list, (std::uint64_t{1} << limits.list_bits) - 1, "triangles",
                " in one voxel");
   for (std::size_t p = 0; p < use.pes.size(); ++p) {
     const std::string where = fmt::format(" in PE {}", p);
-    excess.check(use.pes[p].triangles, limits.max_triangles, "triangles", where);
-    excess.check(use.pes[p].vertices, limits.max_vertices, "vertices", where);
-    excess.check(use.pes[p].references, limits.max_references, "references", where);
+    excess.check(use.pes[p].triangles, memory.triangles, "triangles", where);
+    excess.check(use.pes[p].vertices, memory.vertices, "vertices", where);
+    excess.check(use.pes[p].references, memory.references, "references", where);
   }
   if (excess.text().empty()) return {};
   return fail(ErrorKind::kLimit,
@@ -59,24 +59,27 @@ Result<void> check_limits(protocol::Layout layout, const ImageUse& use) {
                   : "try a coarser --grid or more --pes");
 }
 
-Result<void> check_scene_limits(protocol::Layout layout, int bits, int pes,
-                                std::uint64_t local_ids) {
-  const protocol::LayoutLimits limits = protocol::layout_limits(layout);
-  const std::string_view name = protocol::name(layout);
+Result<void> check_widths(protocol::Layout layout, int bits, int pes) {
   if (layout == protocol::Layout::kCompact && bits > kMaxCompactBits) {
     return fail(ErrorKind::kLimit, fmt::format("{} lattice bits do not fit compact records", bits),
                 fmt::format("use at most {} --bits, or the wide layout", kMaxCompactBits));
   }
   if (pes > most_pes(layout)) {
-    return fail(ErrorKind::kLimit, fmt::format("{} PEs do not fit the {} layout", pes, name),
+    return fail(ErrorKind::kLimit,
+                fmt::format("{} PEs do not fit the {} layout", pes, protocol::name(layout)),
                 fmt::format("use at most {} --pes", most_pes(layout)));
   }
+  return {};
+}
+
+Result<void> check_scene_limits(protocol::Layout layout, const MemorySizes& memory, int pes,
+                                std::uint64_t local_ids) {
   const std::uint64_t most =
-      std::min(most_local_ids(layout), static_cast<std::uint64_t>(pes) * limits.max_triangles);
+      std::min(most_local_ids(layout), static_cast<std::uint64_t>(pes) * memory.triangles);
   if (local_ids > most) {
     return fail(ErrorKind::kLimit,
                 fmt::format("{} triangles do not fit the {} layout: {} PEs hold {} at most",
-                            local_ids, name, pes, most),
+                            local_ids, protocol::name(layout), pes, most),
                 layout == protocol::Layout::kCompact ? "use the wide layout, or fewer triangles"
                                                      : "use more --pes");
   }

@@ -7,6 +7,7 @@
 
 #include "gridrt_protocol.hpp"
 #include "hal/error.hpp"
+#include "host/image/memory_sizes.hpp"
 
 namespace gridrt {
 
@@ -32,12 +33,16 @@ int most_pes(protocol::Layout layout);
 /// Most local ids that a layout can name (all ones means none).
 std::uint64_t most_local_ids(protocol::Layout layout);
 
-/// kLimit with every size that is too large and what would help, or nothing.
-Result<void> check_limits(protocol::Layout layout, const ImageUse& use);
+/// kLimit with every size that is too large for `memory`, or for the layout's fields, and what
+/// would help; or nothing.
+Result<void> check_limits(protocol::Layout layout, const MemorySizes& memory, const ImageUse& use);
 
-/// Refuses, before any work on the grid, what can fit in no grid: PEs, lattice bits, ids, and more
-/// triangles than all PEs together hold. Errors: kLimit.
-Result<void> check_scene_limits(protocol::Layout layout, int bits, int pes,
+/// Refuses PEs and lattice bits that records of the layout cannot express. Errors: kLimit.
+Result<void> check_widths(protocol::Layout layout, int bits, int pes);
+
+/// Refuses, before any work on the grid, what can fit in no grid: more triangles than ids, or than
+/// all PEs together hold. Errors: kLimit.
+Result<void> check_scene_limits(protocol::Layout layout, const MemorySizes& memory, int pes,
                                 std::uint64_t local_ids);
 
 }  // namespace gridrt

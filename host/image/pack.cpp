@@ -246,7 +246,7 @@ Result<Image> pack_image(const LocalTriangles& local, const Cut& cut) {
     collector.collect(pe);
     use.pes.push_back({pe.triangles.size(), pe.vertices.size(), pe.references});
   }
-  if (auto good = check_limits(cut.layout, use); !good) {
+  if (auto good = check_limits(cut.layout, cut.memory, use); !good) {
     return std::unexpected(std::move(good.error()));
   }
   Image image;

@@ -28,9 +28,11 @@ struct Cut {
   Mapping mapping = Mapping::kBoxes;  ///< by which they were dealt
   int pes = 1;
   protocol::Layout layout = protocol::Layout::kWide;
+  MemorySizes memory = memory_sizes(protocol::Layout::kWide);
 };
 
-/// Packs all sections but Scene, and the header. Errors: kLimit if the layout cannot hold them.
+/// Packs all sections but Scene, and the header. Errors: kLimit if layout or memory cannot hold
+/// them.
 Result<Image> pack_image(const LocalTriangles& local, const Cut& cut);
 
 /// Appends a section and counts it in the header. Errors: kLimit for a section of 4 GiB or more.

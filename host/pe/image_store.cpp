@@ -28,14 +28,16 @@ bool is_device_section(std::uint8_t kind) {
 }
 
 /// Checks the fields that neither the grid nor the sections check later.
-Accepted<void> check(const protocol::ImageHeader& header) {
+Accepted<void> check(const protocol::ImageHeader& header,
+                     const protocol::CapabilitiesReport& limits) {
   if (header.magic != protocol::kImageMagic) return refuse(ErrorCode::kBadHeader, 0);
   if (header.version != protocol::kImageVersion) return refuse(ErrorCode::kBadHeader, 4);
   const auto layout = static_cast<protocol::Layout>(header.layout);
   const bool compact = layout == protocol::Layout::kCompact;
   if (!compact && layout != protocol::Layout::kWide) return refuse(ErrorCode::kBadHeader, 6);
-  if (header.pes < 1 || header.pes > kMaxPes) return refuse(ErrorCode::kBadHeader, 7);
-  const int most_bits = compact ? kMaxCompactBits : kMaxBits;
+  if (((limits.layouts >> header.layout) & 1U) == 0) return refuse(ErrorCode::kBadHeader, 6);
+  if (header.pes < 1 || header.pes > limits.pes) return refuse(ErrorCode::kBadHeader, 7);
+  const int most_bits = std::min<int>(limits.max_bits, compact ? kMaxCompactBits : kMaxBits);
   if (header.bits < kMinBits || header.bits > most_bits) return refuse(ErrorCode::kBadHeader, 8);
   for (std::size_t a = 0; a < 3; ++a) {
     if (header.max_q[a] >= (1 << header.bits) - 2) {
@@ -50,7 +52,7 @@ Accepted<void> check(const protocol::ImageHeader& header) {
 
 }  // namespace
 
-void ImageStore::clear() { *this = ImageStore{}; }
+void ImageStore::clear() { *this = ImageStore(limits_); }
 
 Accepted<void> ImageStore::add(const protocol::LoadHead& head, std::span<const std::byte> bytes) {
   const std::uint32_t where = head.kind + 256U * head.pe;
@@ -106,17 +108,44 @@ Accepted<void> ImageStore::parse_header() {
   if (crc32c(bytes.first(end)) != protocol::detail::get32(bytes.data() + end)) {
     return refuse(ErrorCode::kBadSectionCrc, section_detail(SectionKind::kHeader));
   }
-  if (Accepted<void> good = check(header_); !good) return good;
+  if (Accepted<void> good = check(header_, limits_); !good) return good;
   for (std::size_t i = 0; i < header_.sections; ++i) {
     const auto raw = bytes.subspan(kHead + i * protocol::SectionEntry::kBytes)
                          .first<protocol::SectionEntry::kBytes>();
     const protocol::SectionEntry entry = protocol::load_section_entry(raw);
     if (!is_device_section(entry.kind)) continue;
+    if (Accepted<void> good = check_size(entry); !good) return good;
     if (!directory_.emplace(Key{entry.kind, entry.pe}, entry).second) {
       return refuse(ErrorCode::kBadHeader, static_cast<std::uint32_t>(kHead + i * 16));
     }
   }
   header_complete_ = true;
+  return {};
+}
+
+Accepted<void> ImageStore::check_size(const protocol::SectionEntry& entry) const {
+  const auto kind = static_cast<SectionKind>(entry.kind);
+  const auto fits = [&](const auto& codec, std::uint32_t most) {
+    // Widths that are not valid are refused at Commit.
+    return !codec.valid() || entry.bytes <= std::uint64_t{most} * codec.stride();
+  };
+  const auto fits_memory = [&] {
+    switch (kind) {
+      case SectionKind::kBlocks:
+        return fits(protocol::BlockCodec(header_), limits_.max_blocks);
+      case SectionKind::kCells:
+        return fits(protocol::CellCodec(header_), limits_.max_cells);
+      case SectionKind::kReferences:
+        return fits(protocol::ReferenceCodec(header_), limits_.max_references);
+      case SectionKind::kTriangles:
+        return fits(protocol::TriangleCodec(header_), limits_.max_triangles);
+      case SectionKind::kVertices:
+        return fits(protocol::VertexCodec(header_), limits_.max_vertices);
+      default:
+        return true;
+    }
+  };
+  if (!fits_memory()) return refuse(ErrorCode::kTooLarge, section_detail(kind, entry.pe));
   return {};
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "gridrt_protocol.hpp"
+#include "host/pe/capabilities.hpp"
 #include "host/pe/engine.hpp"
 #include "host/pe/refusal.hpp"
 
@@ -24,6 +25,10 @@ struct CommittedImage {
 /// Memory grows with the bytes that have arrived, never with what a header promises.
 class ImageStore {
  public:
+  /// Refuses images beyond `limits`.
+  explicit ImageStore(const protocol::CapabilitiesReport& limits = software_capabilities())
+      : limits_(limits) {}
+
   /// Takes one piece. A header piece at offset 0 that differs from the header in store starts a
   /// new image. Pieces of a section may be repeated; one that leaves a gap is dropped (Commit will
   /// name the section as missing).
@@ -42,6 +47,9 @@ class ImageStore {
   [[nodiscard]] Accepted<std::span<const std::byte>> section(protocol::SectionKind kind,
                                                              std::uint8_t pe) const;
 
+  [[nodiscard]] Accepted<void> check_size(const protocol::SectionEntry& entry) const;
+
+  protocol::CapabilitiesReport limits_;
   std::vector<std::byte> header_bytes_;
   bool header_complete_ = false;
   protocol::ImageHeader header_{};

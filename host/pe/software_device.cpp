@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include "hal/record_sizes.hpp"
-#include "host/grid/partition.hpp"
 #include "host/pe/ray_batch.hpp"
 
 namespace gridrt {
@@ -26,25 +25,10 @@ void put_report(const Report& report, std::span<std::byte> body) {
   std::copy_n(bytes.begin(), std::min(bytes.size(), body.size()), body.begin());
 }
 
-protocol::CapabilitiesReport capabilities() {
-  const protocol::LayoutLimits& limits = protocol::kWideLimits;
-  protocol::CapabilitiesReport report;
-  report.layouts = (1U << static_cast<unsigned>(Layout::kCompact)) |
-                   (1U << static_cast<unsigned>(Layout::kWide));
-  report.max_bits = kMaxBits;
-  report.pes = kMaxPes;
-  report.max_payload = protocol::kMaxPayload;
-  report.max_triangles = limits.max_triangles;
-  report.max_vertices = limits.max_vertices;
-  report.max_references = limits.max_references;
-  report.max_cells = limits.max_cells;
-  report.max_blocks = limits.max_blocks;
-  return report;
-}
-
 }  // namespace
 
-SoftwareDevice::SoftwareDevice(SoftwareDeviceOptions options) : options_(std::move(options)) {}
+SoftwareDevice::SoftwareDevice(SoftwareDeviceOptions options)
+    : options_(std::move(options)), store_(options_.capabilities) {}
 
 Result<void> SoftwareDevice::consume(std::span<const std::byte> bytes) {
   reader_.push(bytes);
@@ -64,6 +48,9 @@ Result<void> SoftwareDevice::handle_frames() {
 
 Result<void> SoftwareDevice::handle(const Frame& frame) {
   const std::uint32_t sequence = frame.header.sequence;
+  if (frame.payload.size() > options_.capabilities.max_payload) {
+    return answer_error(sequence, {ErrorCode::kBadLength, frame.header.length});
+  }
   Accepted<void> accepted;
   switch (frame.type()) {
     case FrameType::kNoOp:
@@ -180,7 +167,7 @@ Result<void> SoftwareDevice::get_feature(std::uint8_t id, std::span<std::byte> b
       return {};
     }
     case protocol::CapabilitiesReport::kId:
-      put_report(capabilities(), body);
+      put_report(options_.capabilities, body);
       return {};
     case protocol::StatusReport::kId: {
       protocol::StatusReport report;

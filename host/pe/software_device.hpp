@@ -16,6 +16,8 @@ namespace gridrt {
 struct SoftwareDeviceOptions {
   std::string name = "seq";  ///< told in the Identity report, at most 32 characters
   int threads = 1;           ///< worker threads, >= 1; 1 uses the caller's
+  /// What it tells about itself, and what it refuses to go beyond.
+  protocol::CapabilitiesReport capabilities = software_capabilities();
 };
 
 /// Answers frames in the order of their arrival, each before consume() returns.

@@ -1,5 +1,6 @@
 #include "tests/adversarial/bench.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
@@ -7,7 +8,9 @@
 
 #include <fmt/format.h>
 
+#include "host/driver/image_options.hpp"
 #include "tests/adversarial/bridge.hpp"
+#include "tests/adversarial/devices.hpp"
 
 namespace gridrt::adversarial {
 namespace {
@@ -75,7 +78,9 @@ Configuration random_configuration(Random& random, int bits) {
   constexpr std::array<Mapping, 3> kMappings{Mapping::kBoxes, Mapping::kContiguous,
                                              Mapping::kVoxel};
   Configuration s;
+  const std::vector<std::string> asked = asked_devices();
   s.device.name = random.chance(0.7) ? "seq" : "omp";
+  if (!asked.empty()) s.device.name = asked[random.below(asked.size())];
   s.device.threads = random.between(1, 3);
   s.device.rays_per_frame = kBatches[1 + random.below(4)];
   if (random.chance(0.02)) s.device.rays_per_frame = 1;
@@ -118,30 +123,80 @@ Tally& Tally::operator+=(const Tally& other) {
   return *this;
 }
 
+Result<Image> Bench::build(const Scene& scene) {
+  const protocol::CapabilitiesReport& can = device_->capabilities();
+  ImageOptions& wanted = configuration_.image;
+  wanted.bits = std::min<int>(wanted.bits, can.max_bits);
+  wanted.pes = std::min<int>(wanted.pes, can.pes);
+  const auto speaks = [&](protocol::Layout layout) {
+    return ((can.layouts >> static_cast<unsigned>(layout)) & 1U) != 0;
+  };
+  if (!speaks(wanted.layout)) wanted.layout = protocol::Layout::kNone;
+  wanted = options_for(wanted, can);
+  Result<Image> image = build_image(scene, wanted);
+  const auto too_large = [&] { return !image && image.error().kind == ErrorKind::kLimit; };
+  if (too_large() && speaks(protocol::Layout::kWide)) {
+    wanted.layout = protocol::Layout::kWide;
+    image = build_image(scene, wanted);
+  }
+  if (too_large()) {
+    wanted.grid.reset();
+    image = build_image(scene, wanted);
+  }
+  return image;
+}
+
 Result<Bench> Bench::open(const Scene& scene, const Configuration& configuration) {
   Bench bench;
   bench.configuration_ = configuration;
-  Result<Image> image = build_image(scene, configuration.image);
-  if (!image && image.error().kind == ErrorKind::kLimit) {
-    bench.configuration_.image.layout = protocol::Layout::kWide;
-    image = build_image(scene, bench.configuration_.image);
-  }
-  if (!image && image.error().kind == ErrorKind::kLimit) {
-    bench.configuration_.image.grid.reset();
-    image = build_image(scene, bench.configuration_.image);
-  }
-  if (!image) return std::unexpected(std::move(image.error()));
-  bench.lattice_ = image->lattice();
-  bench.grid_ = image->grid();
   auto device = open_device(configuration.device);
   if (!device) return std::unexpected(std::move(device.error()));
   bench.device_ = std::move(*device);
+  const auto image = bench.build(scene);
+  if (!image) return std::unexpected(image.error());
+  bench.lattice_ = image->lattice();
+  bench.grid_ = image->grid();
   if (auto loaded = bench.device_->load(*image); !loaded) {
     return std::unexpected(std::move(loaded.error()));
   }
+  if (rays_per_traced_one() > 1) {
+    DeviceOptions options;
+    options.name = "seq";
+    auto stand_in = open_device(options);
+    if (!stand_in) return std::unexpected(std::move(stand_in.error()));
+    bench.stand_in_ = std::move(*stand_in);
+    ImageOptions wide = bench.configuration_.image;
+    wide.layout = protocol::Layout::kWide;
+    wide.memory.reset();
+    const auto whole = build_image(scene, wide);
+    if (!whole) return std::unexpected(whole.error());
+    if (auto loaded = bench.stand_in_->load(*whole); !loaded) {
+      return std::unexpected(std::move(loaded.error()));
+    }
+  }
   const auto search = scene.triangles.size() > 100 ? truth::Search::kPruned : truth::Search::kAll;
-  bench.truth_ = std::make_unique<truth::Tracer>(scene, configuration.image.bits, search);
+  bench.truth_ = std::make_unique<truth::Tracer>(scene, bench.configuration_.image.bits, search);
   return bench;
+}
+
+Result<void> Bench::trace(std::span<const Segment> segments, Query query,
+                          std::span<Hit> hits) const {
+  if (!stand_in_) return device_->trace(segments, query, hits);
+  if (auto done = stand_in_->trace(segments, query, hits); !done) return done;
+  const std::size_t step = rays_per_traced_one();
+  std::vector<Segment> part;
+  std::vector<std::size_t> places;
+  // At least one, and not always the first.
+  const std::size_t first =
+      segments.empty() ? 0 : segments.size() % std::min(step, segments.size());
+  for (std::size_t i = first; i < segments.size(); i += step) {
+    part.push_back(segments[i]);
+    places.push_back(i);
+  }
+  std::vector<Hit> answers(part.size());
+  if (auto done = device_->trace(part, query, answers); !done) return done;
+  for (std::size_t i = 0; i < part.size(); ++i) hits[places[i]] = answers[i];
+  return {};
 }
 
 std::vector<Hit> Bench::check_rays(std::span<const Ray> rays, Tally& tally) const {
@@ -176,7 +231,7 @@ std::vector<Hit> Bench::check(std::span<const Segment> segments,
   std::vector<Hit> any(segments.size());
   for (const auto& [query, out] :
        {std::pair{Query::kClosestHit, &hits}, std::pair{Query::kAnyHit, &any}}) {
-    if (auto done = device_->trace(segments, query, *out); !done) {
+    if (auto done = trace(segments, query, *out); !done) {
       tally.add(fmt::format("{}\n  {}", describe(configuration_), done.error().message));
       return hits;
     }

@@ -20,7 +20,8 @@ struct Configuration {
   ImageOptions image;
 };
 
-/// seq or omp; 1, 2, 4 or 8 PEs; any mapping, grid, batch size, thread count and layout.
+/// seq or omp, or one of those that GRIDRT_DEVICES names; 1, 2, 4 or 8 PEs; any mapping, grid,
+/// batch size, thread count and layout.
 Configuration random_configuration(Random& random, int bits);
 
 /// One line that tells a configuration.
@@ -40,8 +41,10 @@ struct Tally {
 /// An open device with a loaded scene, and the truth of that scene.
 class Bench {
  public:
+  /// What goes beyond the device (lattice bits, PEs, layout) is cut down to it;
   /// `configuration.image.layout` compact falls back to wide where the scene does not fit; a grid
-  /// too fine for the lattice falls back to the default one.
+  /// too fine for the lattice falls back to the default one. Of the rays the device gets the part
+  /// that GRIDRT_FRACTION says; `seq` answers the others.
   static Result<Bench> open(const Scene& scene, const Configuration& configuration);
 
   [[nodiscard]] const truth::Tracer& truth() const { return *truth_; }
@@ -61,11 +64,16 @@ class Bench {
                          std::span<const truth::Segment> expected, Tally& tally) const;
 
  private:
+  Result<Image> build(const Scene& scene);
+  [[nodiscard]] Result<void> trace(std::span<const Segment> segments, Query query,
+                                   std::span<Hit> hits) const;
+
   Configuration configuration_;
   Lattice lattice_;
   VoxelGrid grid_;
   std::unique_ptr<truth::Tracer> truth_;
   std::unique_ptr<Device> device_;
+  std::unique_ptr<Device> stand_in_;  ///< seq, if the device does not get all rays
 };
 
 }  // namespace gridrt::adversarial

@@ -1,6 +1,7 @@
 # The cases, each device answer against the truth.
 find_package(fmt REQUIRED)
-add_library(gridrt_bench STATIC ${CMAKE_CURRENT_LIST_DIR}/bench.cpp)
+add_library(gridrt_bench STATIC ${CMAKE_CURRENT_LIST_DIR}/bench.cpp
+                                ${CMAKE_CURRENT_LIST_DIR}/devices.cpp)
 target_link_libraries(gridrt_bench PUBLIC gridrt_adversarial gridrt_driver
                       PRIVATE gridrt_flags fmt::fmt)
 

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/adversarial/bench.hpp"
+#include "tests/adversarial/devices.hpp"
 #include "tests/adversarial/meshes.hpp"
 #include "tests/adversarial/rays.hpp"
 
@@ -32,7 +33,8 @@ void with_bench(const Scene& scene, const Configuration& configuration, const Us
 inline Configuration plain_configuration(int bits = kDefaultBits,
                                          std::optional<glm::ivec3> grid = {}) {
   Configuration s;
-  s.device.name = "seq";
+  const std::vector<std::string> asked = asked_devices();
+  s.device.name = asked.empty() ? "seq" : asked.front();
   s.image.bits = bits;
   s.image.grid = grid;
   s.image.with_scene = false;

@@ -1,9 +1,11 @@
 // Cases 32, 33 and 35: nothing but the scene decides an answer.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <set>
 
 #include "host/driver/session.hpp"
+#include "tests/adversarial/devices.hpp"
 #include "tests/contract/fixture.hpp"
 
 namespace gridrt::contract {
@@ -11,8 +13,13 @@ namespace {
 
 using protocol::Layout;
 
-INSTANTIATE_TEST_SUITE_P(Devices, Contract, testing::ValuesIn(built_in_devices()),
-                         [](const auto& device) { return device.param; });
+INSTANTIATE_TEST_SUITE_P(Devices, Contract, testing::ValuesIn(adversarial::devices_under_test()),
+                         [](const auto& device) {
+                           std::string name = device.param;  // gtest takes letters, digits and _
+                           std::ranges::replace_if(
+                               name, [](char c) { return c == '-' || c == ':'; }, '_');
+                           return name;
+                         });
 
 struct Question {
   int bits = kDefaultBits;
@@ -102,7 +109,7 @@ TEST_P(Contract, HitsAtOtherLatticeBits) {
   for (const int bits : {6, 11, 16, 20, 24}) {
     const Question q = ask(bits, static_cast<std::uint64_t>(bits));
     ImageOptions options = plain(bits);
-    if (bits <= kMaxCompactBits) options.layout = Layout::kCompact;
+    options.layout = bits <= kMaxCompactBits ? Layout::kCompact : Layout::kWide;
     // At few lattice bits the default grid of so many triangles may be too fine.
     options.grid = glm::ivec3{4};
     const auto image = build_image(q.scene, options);

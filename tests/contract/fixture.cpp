@@ -1,9 +1,12 @@
 #include "tests/contract/fixture.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cstdlib>
 
+#include "host/driver/image_options.hpp"
 #include "tests/adversarial/bench.hpp"
+#include "tests/adversarial/devices.hpp"
 #include "tests/adversarial/meshes.hpp"
 #include "tests/adversarial/rays.hpp"
 
@@ -45,14 +48,6 @@ bool same(const Hit& a, const Hit& b) {
   return a.id == b.id && bits(a.t) == bits(b.t) && bits(a.u) == bits(b.u) && bits(a.v) == bits(b.v);
 }
 
-ImageOptions plain(int bits, int pes) {
-  ImageOptions options;
-  options.bits = bits;
-  options.pes = pes;
-  options.with_scene = false;
-  return options;
-}
-
 std::vector<Hit> trace(Device& device, std::span<const Segment> segments, Query query) {
   // Filled with something that no device answers.
   std::vector<Hit> hits(segments.size(), Hit{-77, -1.0, -1.0, -1.0});
@@ -66,7 +61,11 @@ std::vector<Hit> reference(const Scene& scene, int bits, std::span<const Segment
   DeviceOptions options;
   options.name = "seq";
   auto device = open_device(options);
-  const auto image = build_image(scene, plain(bits, 1));
+  ImageOptions image_options;
+  image_options.bits = bits;
+  image_options.pes = 1;
+  image_options.with_scene = false;
+  const auto image = build_image(scene, image_options);
   EXPECT_TRUE(device && image);
   if (!device || !image) return {};
   const auto loaded = (*device)->load(*image);
@@ -85,11 +84,21 @@ std::unique_ptr<Device> Contract::open(DeviceOptions options) {
   return std::move(*device);
 }
 
+ImageOptions Contract::plain(int bits, int pes) {
+  ImageOptions options;
+  options.bits = bits;
+  options.with_scene = false;
+  const auto device = open();
+  if (!device) return options;
+  options.pes = pes == 0 ? std::min<int>(4, device->capabilities().pes) : pes;
+  return options_for(options, device->capabilities());
+}
+
 bool Contract::loads(Device& device, const Image& image) {
   const auto loaded = device.load(image);
   if (loaded) return true;
   const Error& error = loaded.error();
-  if (error.kind == ErrorKind::kLimit || error.kind == ErrorKind::kUnsupported) {
+  if (adversarial::is_beyond(image, device.capabilities())) {
     [&] { GTEST_SKIP() << error.message; }();
   } else {
     ADD_FAILURE() << error.message;
@@ -108,6 +117,7 @@ std::vector<Hit> Contract::answers(const DeviceOptions& options, const Image& im
     const ErrorKind kind = loaded.error().kind;
     EXPECT_TRUE(kind == ErrorKind::kLimit || kind == ErrorKind::kUnsupported)
         << loaded.error().message;
+    EXPECT_TRUE(adversarial::is_beyond(image, device->capabilities())) << loaded.error().message;
     const auto counters = device->counters();
     EXPECT_TRUE(counters && counters->bytes_out == 0) << "something was sent";
     refused = loaded.error().message;

@@ -24,9 +24,6 @@ std::vector<Segment> awkward_segments(const Scene& scene, int bits, std::uint64_
 /// Bit for bit, NaN included.
 bool same(const Hit& a, const Hit& b);
 
-/// Image options without the scene section.
-ImageOptions plain(int bits = kDefaultBits, int pes = 4);
-
 /// Traces all segments; a failure fails the test.
 std::vector<Hit> trace(Device& device, std::span<const Segment> segments, Query query);
 
@@ -40,12 +37,16 @@ class Contract : public testing::TestWithParam<std::string> {
   /// The device under test; a failure fails the test.
   static std::unique_ptr<Device> open(DeviceOptions options = {});
 
-  /// True if the device takes the image. One that it cannot hold (kUnsupported or kLimit) marks the
-  /// test as skipped; any other error fails it. On false the test returns.
+  /// Image options that fit the device under test, without the scene section; pes 0: four, or as
+  /// many as it has.
+  static ImageOptions plain(int bits = kDefaultBits, int pes = 0);
+
+  /// True if the device takes the image. One that goes beyond it (is_beyond) marks the test as
+  /// skipped; any other refusal fails it. On false the test returns.
   static bool loads(Device& device, const Image& image);
 
-  /// Opens, loads and traces. Nothing where the device does not take such an image (kUnsupported
-  /// or kLimit, refused before anything is sent); `refused` says why.
+  /// Opens, loads and traces. Nothing where the image goes beyond the device (refused before
+  /// anything is sent); `refused` says why.
   static std::vector<Hit> answers(const DeviceOptions& options, const Image& image,
                                   std::span<const Segment> segments, Query query,
                                   std::string& refused);

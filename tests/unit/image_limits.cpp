@@ -51,10 +51,12 @@ ImageUse full_use() {
   return use;
 }
 
+constexpr MemorySizes kBoard = memory_sizes(protocol::Layout::kCompact);
+
 TEST(Limits, EveryMemoryIsCheckedToTheEntry) {
-  EXPECT_TRUE(check_limits(protocol::Layout::kCompact, full_use()));
+  EXPECT_TRUE(check_limits(protocol::Layout::kCompact, kBoard, full_use()));
   const auto expect_over = [](const ImageUse& use, std::string_view text) {
-    const auto good = check_limits(protocol::Layout::kCompact, use);
+    const auto good = check_limits(protocol::Layout::kCompact, kBoard, use);
     ASSERT_FALSE(good);
     EXPECT_EQ(good.error().kind, ErrorKind::kLimit);
     EXPECT_NE(good.error().message.find(text), std::string::npos) << good.error().message;
@@ -78,16 +80,19 @@ TEST(Limits, EveryMemoryIsCheckedToTheEntry) {
   use = full_use();
   ++use.pes[0].references;
   expect_over(use, "11265 references in PE 0");
-  EXPECT_TRUE(check_limits(protocol::Layout::kWide, use));
+  EXPECT_TRUE(check_limits(protocol::Layout::kWide, memory_sizes(protocol::Layout::kWide), use));
 }
 
 TEST(Limits, BitsPesAndIds) {
   using protocol::Layout;
-  EXPECT_TRUE(check_scene_limits(Layout::kCompact, 17, 4, 16384));
-  EXPECT_FALSE(check_scene_limits(Layout::kCompact, 18, 4, 1));
-  EXPECT_FALSE(check_scene_limits(Layout::kCompact, 17, 5, 1));
-  EXPECT_FALSE(check_scene_limits(Layout::kCompact, 17, 4, 16385));
-  EXPECT_TRUE(check_scene_limits(Layout::kWide, 24, 64, 0x7FFFFFFF));
+  EXPECT_TRUE(check_widths(Layout::kCompact, 17, 4));
+  EXPECT_FALSE(check_widths(Layout::kCompact, 18, 4));
+  EXPECT_FALSE(check_widths(Layout::kCompact, 17, 5));
+  EXPECT_TRUE(check_widths(Layout::kWide, 24, 64));
+  EXPECT_TRUE(check_scene_limits(Layout::kCompact, kBoard, 4, 16384));
+  EXPECT_FALSE(check_scene_limits(Layout::kCompact, kBoard, 4, 16385));
+  const MemorySizes wide = memory_sizes(Layout::kWide);
+  EXPECT_TRUE(check_scene_limits(Layout::kWide, wide, 64, 0x7FFFFFFF));
   EXPECT_EQ(most_pes(Layout::kCompact), 4);
   EXPECT_EQ(most_pes(Layout::kWide), 64);
   EXPECT_EQ(most_local_ids(Layout::kCompact), protocol::kNoIdCompact);

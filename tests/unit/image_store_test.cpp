@@ -87,5 +87,48 @@ TEST(ImageStore, AFlippedBitInTheHeaderIsFoundAtOnce) {
   }
 }
 
+TEST(ImageStore, RefusesWhatGoesBeyondItsLimitsByOneEntry) {
+  using Report = protocol::CapabilitiesReport;
+  const Image image = small_image(protocol::Layout::kCompact);
+  const std::vector<ImageCounts> counts = count_image(image);
+  Report exact = board_capabilities();
+  exact.pes = 2;
+  exact.max_cells = image.header.occupied_cells;
+  const glm::ivec3 blocks = (image.grid().count + 1) / 2;
+  exact.max_blocks = static_cast<std::uint32_t>(blocks.x * blocks.y * blocks.z);
+  exact.max_triangles = exact.max_vertices = exact.max_references = 0;
+  for (std::size_t pe = 0; pe < 2; ++pe) {
+    const auto grow = [](std::uint32_t& most, std::uint64_t n) {
+      most = std::max(most, static_cast<std::uint32_t>(n));
+    };
+    grow(exact.max_triangles, counts[pe].triangles);
+    grow(exact.max_vertices, counts[pe].vertices);
+    grow(exact.max_references, counts[pe].references);
+  }
+  const std::vector<std::byte> header = header_section(image);
+  const auto accepts = [&](const Report& limits) {
+    ImageStore store(limits);
+    const auto added = add(store, SectionKind::kHeader, 0, header);
+    return added ? ErrorCode::kNone : added.error().code;
+  };
+  EXPECT_EQ(accepts(exact), ErrorCode::kNone);
+  for (std::uint32_t Report::* const size :
+       {&Report::max_triangles, &Report::max_vertices, &Report::max_references, &Report::max_cells,
+        &Report::max_blocks}) {
+    Report less = exact;
+    --(less.*size);
+    EXPECT_EQ(accepts(less), ErrorCode::kTooLarge);
+  }
+  Report other = exact;
+  other.pes = 1;
+  EXPECT_EQ(accepts(other), ErrorCode::kBadHeader);
+  other = exact;
+  other.max_bits = 16;
+  EXPECT_EQ(accepts(other), ErrorCode::kBadHeader);
+  other = exact;
+  other.layouts = 1U << static_cast<unsigned>(protocol::Layout::kWide);
+  EXPECT_EQ(accepts(other), ErrorCode::kBadHeader);
+}
+
 }  // namespace
 }  // namespace gridrt

@@ -32,6 +32,9 @@ class BruteDevice final : public Device {
 
   Result<DeviceCounters> counters() override { return DeviceCounters{}; }
   [[nodiscard]] std::string name() const override { return "brute"; }
+  [[nodiscard]] const protocol::CapabilitiesReport& capabilities() const override {
+    return capabilities_;
+  }
 
   int batches = 0;
   std::vector<Segment> asked;             ///< all segments so far
@@ -63,6 +66,7 @@ class BruteDevice final : public Device {
   }
 
   const ImageTriangles& triangles_;
+  protocol::CapabilitiesReport capabilities_;
 };
 
 /// A scene under construction.
