@@ -109,6 +109,23 @@ def layout_limits(layouts: tuple[Layout, ...]) -> str:
     return "\n".join(lines)
 
 
+def windows(protocol: Protocol) -> str:
+    lines = ["/// Registers of a board's shell that hold the body of a report: 32-bit words from a",
+             "/// byte address on.",
+             "struct RegisterWindow {", "  std::uint32_t base = 0;", "  std::uint32_t words = 0;",
+             "  std::uint8_t report = 0;  ///< id", "  bool readable = false;",
+             "  bool writable = false;", "};", ""]
+    names = []
+    for w in protocol.windows:
+        flags = ", ".join("true" if flag else "false" for flag in (w.readable, w.writable))
+        names.append(f"k{w.name}Window")
+        lines.append(f"inline constexpr RegisterWindow {names[-1]}{{{w.base:#x}U, {w.words}U, "
+                     f"{w.report.report_id}, {flags}}};")
+    lines += [f"inline constexpr std::array<RegisterWindow, {len(names)}> kRegisterWindows{{"]
+    lines += [f"    {name}," for name in names] + ["};", "", ""]
+    return "\n".join(lines)
+
+
 def cpp_header(protocol: Protocol) -> str:
     parts = [HEADER, constants(protocol)]
     parts += [enum(e) for e in protocol.enums]
@@ -118,4 +135,5 @@ def cpp_header(protocol: Protocol) -> str:
     parts += [codec(r) for r in protocol.records if r.bytes is None]
     parts.append(layout_limits(protocol.layouts))
     parts += [byte_struct(r) for r in protocol.reports]
+    parts.append(windows(protocol))
     return "".join(parts) + FOOTER

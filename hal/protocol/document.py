@@ -83,4 +83,11 @@ def document(protocol: Protocol) -> str:
     out.append("## HID reports\n\nByte 0 is the report id; bytes after the body are 0.\n\n")
     for r in protocol.reports:
         out.append(f"### {r.name} (id {r.report_id})\n\n{r.doc}\n\n{byte_table(r, 1)}")
+    out.append("## Registers\n\nOf a board's shell: 32-bit words at byte addresses. A window holds the "
+               "body of the report\nof its name. Reading the low word of a 64-bit value keeps the "
+               "high word for the next read.\n\n")
+    access = {(True, False): "read", (False, True): "write", (True, True): "read and write"}
+    out.append(table(["address", "words", "window", "access"],
+                     [[f"{w.base:#05x}", w.words, w.name, access[w.readable, w.writable]]
+                      for w in protocol.windows]))
     return "".join(out).rstrip("\n") + "\n"

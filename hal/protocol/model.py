@@ -101,6 +101,21 @@ class Layout:
 
 
 @dataclass(frozen=True)
+class Window:
+    """Registers that hold the body of a report, word by word."""
+
+    name: str
+    base: int
+    report: Struct
+    readable: bool
+    writable: bool
+
+    @property
+    def words(self) -> int:
+        return self.report.bytes // 4
+
+
+@dataclass(frozen=True)
 class Protocol:
     constants: tuple[Constant, ...]
     enums: tuple[Enum, ...]
@@ -108,6 +123,7 @@ class Protocol:
     records: tuple[Record, ...]
     layouts: tuple[Layout, ...]
     reports: tuple[Struct, ...]
+    windows: tuple[Window, ...]
 
     def layout(self, name: str) -> Layout:
         return next(layout for layout in self.layouts if layout.name == name)

@@ -5,7 +5,7 @@ import tomllib
 from pathlib import Path
 
 from model import (TYPE_BYTES, BitField, ByteField, Constant, Enum, EnumValue, Layout, Protocol,
-                   Record, SourceError, Struct)
+                   Record, SourceError, Struct, Window)
 
 CPP_KEYWORDS = frozenset(
     "alignas alignof and asm auto bool break case catch char class const constexpr continue "
@@ -208,6 +208,24 @@ def read_layouts(tables: dict, enums: tuple[Enum, ...], records: tuple[Record, .
     return tuple(out)
 
 
+WINDOW_BYTES = 64  # a window starts on a multiple of it and takes no more
+ACCESSES = ("read", "write", "read and write")
+
+
+def read_window(name: str, table: dict, reports: tuple[Struct, ...]) -> Window:
+    place = f"registers.{name}"
+    check_keys(table, place, {"base", "access"})
+    report = next((r for r in reports if r.name == f"{name}Report"), None)
+    require(report is not None, place, "there is no report of this name")
+    base = integer(table["base"], f"{place}.base", 0, 2**16 - WINDOW_BYTES)
+    require(base % WINDOW_BYTES == 0, f"{place}.base", f"is not a multiple of {WINDOW_BYTES}")
+    require(report.bytes % 4 == 0, place,
+            f"the report's {report.bytes} bytes are not whole words of 4")
+    access = table["access"]
+    require(access in ACCESSES, f"{place}.access", f"must be one of: {', '.join(ACCESSES)}")
+    return Window(name, base, report, "read" in access, "write" in access)
+
+
 def read_protocol(path: Path) -> Protocol:
     """The checked content of the file; SourceError names the file and the place."""
     try:
@@ -222,7 +240,7 @@ def read_protocol(path: Path) -> Protocol:
 
 def build(source: dict) -> Protocol:
     check_keys(source, "top level",
-               {"protocol", "enums", "structs", "records", "layouts", "reports"})
+               {"protocol", "enums", "structs", "records", "layouts", "reports", "registers"})
     constants = read_constants(source["protocol"])
     report_bytes = next((c.value for c in constants if c.name == "report_bytes"), None)
     require(report_bytes is not None, "protocol.report_bytes", "is missing")
@@ -234,6 +252,8 @@ def build(source: dict) -> Protocol:
     layouts = read_layouts(source["layouts"], enums, records)
     reports = tuple(read_report(n, t, report_bytes) for n, t in source["reports"].items())
     unique([r.report_id for r in reports], "reports", "id")
+    windows = tuple(read_window(n, t, reports) for n, t in source["registers"].items())
+    unique([w.base for w in windows], "registers", "base")
     names = [x.name for group in (enums, structs, records, reports) for x in group]
     unique(names, "top level", "type")
-    return Protocol(constants, enums, structs, records, layouts, reports)
+    return Protocol(constants, enums, structs, records, layouts, reports, windows)

@@ -116,6 +116,10 @@ def sv_package(protocol: Protocol) -> str:
     out += [byte_struct(s) for s in protocol.structs]
     out += [record(protocol, r) for r in protocol.records]
     out += [byte_struct(r) for r in protocol.reports]
+    for w in protocol.windows:
+        name = f"REGISTERS_{snake(w.name).upper()}"
+        out.append(parameter(f"{name}_BASE", w.base, f"byte address; {w.report.doc}"))
+        out.append(parameter(f"{name}_WORDS", w.words))
     package = "".join(out).rstrip("\n") + "\n" + FOOTER
     check_names(package)
     return package

@@ -73,12 +73,15 @@ class Output(unittest.TestCase):
                      "localparam int unsigned IMAGE_HEADER_MARGIN_BIT = 32'd704;",
                      "localparam int unsigned VERTEX_RECORD_BITS = 32'd54;",
                      "FRAME_TYPE_TRACE = 8'd3",
+                     "localparam int unsigned REGISTERS_COUNTERS_BASE = 32'd256;",
+                     "localparam int unsigned REGISTERS_COUNTERS_WORDS = 32'd14;",
                      "} ray_compact_t;",
                      "logic [7:0] type_;"):
             self.assertIn(line, package)
         tables = (self.path / "protocol.md").read_text(encoding="utf-8")
         for line in ("| 88-91 | u32 | `margin` |", "| 51-101 | 3 x 17 | `p1` |",
-                     "| from 26 | `base_bits` | `base` |", "### StatusReport (id 3)"):
+                     "| from 26 | `base_bits` | `base` |", "### StatusReport (id 3)",
+                     "| 0x100 | 14 | Counters | read |"):
             self.assertIn(line, tables)
 
 
@@ -166,6 +169,16 @@ MISTAKES = {
     "a report id appears twice":
         (lambda t: t["reports"]["Status"].update(id=2), "id 2 appears twice"),
     "a report id is zero": (lambda t: t["reports"]["Status"].update(id=0), "outside [1, 255]"),
+    "a window has no report":
+        (lambda t: t["registers"].update(Extra={"base": 0, "access": "read"}), "no report of this"),
+    "a window starts between places":
+        (lambda t: t["registers"]["Status"].update(base=0x44), "is not a multiple of 64"),
+    "two windows start at one place":
+        (lambda t: t["registers"]["Status"].update(base=0x40), "base 64 appears twice"),
+    "a window is no whole words":
+        (lambda t: field(t, "reports", "Status", 4).update(type="u8[3]"), "not whole words of 4"),
+    "a window's access is unknown":
+        (lambda t: t["registers"]["Status"].update(access="never"), "must be one of: read"),
     "a type appears twice":
         (lambda t: t["structs"].update(RayWide=t["structs"]["TraceHead"]), "type RayWide appears"),
 }

@@ -36,6 +36,9 @@ TEST(Structs, LoadAndStoreKeepEveryByte) {
   expect_bijection<StatusReport>();
   expect_bijection<CountersReport>();
   expect_bijection<ResetReport>();
+  expect_bijection<LogReport>();
+  expect_bijection<ControlReport>();
+  expect_bijection<StallsReport>();
 }
 
 TEST(Structs, FrameHeaderBytes) {
