@@ -78,4 +78,51 @@ package gridrt_pkg;
     logic [55:0] data;  // the record, from bit 0 up
   } load_t;
 
+  // What the engine counts; each field is added to a total every clock.
+  typedef struct packed {
+    logic       ray;  // a ray has been committed
+    logic [2:0] steps;  // traversal steps
+    logic [2:0] tests;  // exact tests
+    logic [3:0] masked;  // references left out by the half-voxel mask
+    logic [3:0] interrupts;  // tasks and voxels cancelled by an earlier hit
+    logic       feedback_wait;  // a hit that waited for earlier voxels has been committed
+    logic       in_flight;  // at least one ray is in the engine
+    // Where clocks went, while in_flight:
+    logic       no_ray;  // a ray could have been taken and none was offered
+    logic       no_slot;  // a ray waits for a slot
+    logic [2:0] traversal_idle;  // traversal units whose rays all have enough tasks ahead
+    logic [2:0] queue_full;  // PEs whose full queue a task waits for
+    logic [2:0] pe_idle;  // PEs without work
+    logic [2:0] divider_busy;  // PEs with a hit that waits for a divider
+    logic       hit_wait;  // a hit waits to be taken
+  } counts_t;
+
+  // The life of a ray, for the event log; meant for one single ray in flight.
+  typedef struct packed {
+    logic              step_valid;  // a traversal step
+    logic [BLOCK_W-1:0] step_block;
+    logic [7:0]        step_cand;  // voxels of the block that become tasks, in the grid's own axes
+    logic [7:0]        step_jump;  // blocks moved ahead, 0: the next step stays in this slab
+    logic              task_valid;  // a task leaves an expander
+    logic [PE_W-1:0]   task_pe;
+    logic [REF_W-1:0]  task_first;
+    logic [LIST_W-1:0] task_count;
+    logic [5:0]        task_halves;
+    logic [DIST_W-1:0] task_enter;
+    logic              expand_drop;  // a voxel is cancelled before it becomes a task
+    logic [3:0]        test_valid;  // per PE: an exact test ends
+    logic [3:0][TRI_W-1:0] test_triangle;  // index in the PE's memory
+    logic [3:0]        test_hit;
+    logic [3:0]        drop_valid;  // per PE: a task ends without an event
+    logic [3:0]        drop_cancelled;  // because of an earlier hit, not of the mask
+    logic              hit_valid;  // feedback takes a hit event
+    logic [Q_W-1:0]    hit_quotient;
+    logic [ID_W-1:0]   hit_id;
+    logic              interrupt_valid;  // the limit of the ray falls
+    logic [DIST_W-1:0] interrupt_limit;
+    logic              commit_valid;  // the answer
+    logic              commit_hit;
+    logic [ID_W-1:0]   commit_id;
+  } tap_t;
+
 endpackage
