@@ -35,6 +35,7 @@ struct DeviceOptions {
   std::size_t rays_per_frame = 32768;  ///< batch size on the link, >= 1
   int frames_in_flight = 4;            ///< >= 1
   int timeout_ms = 10000;              ///< longest wait for one answer
+  bool spread_rays = true;  ///< to a clocked device: neighbours far apart (ray_order.hpp)
   /// Software PEs that say, and keep to, less than they could: for tests. The device `seq-board`
   /// is `seq` with board_capabilities().
   std::optional<protocol::CapabilitiesReport> capabilities;

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "host/driver/ray_order.hpp"
 #include "host/driver/ray_records.hpp"
 #include "host/driver/upload.hpp"
 
@@ -78,6 +79,7 @@ Result<void> Session::trace(std::span<const Segment> segments, Query query, std:
     hits[i] = miss;
     if (!segments[i].is_miss()) work.sent.push_back(i);
   }
+  if (options_.spread_rays && capabilities_.clock_hz > 0) work.sent = spread(work.sent);
   std::size_t next = 0;
   while (next < work.sent.size() || !work.in_flight.empty()) {
     while (next < work.sent.size() &&
