@@ -1,0 +1,4 @@
+# No module of rtl/ has a warning, taken as a design of its own.
+add_test(NAME rtl_lint COMMAND ${Python3_EXECUTABLE} -B ${CMAKE_CURRENT_LIST_DIR}/lint_test.py
+  --verilator ${GRIDRT_VERILATOR} --protocol ${PROJECT_BINARY_DIR}/generated/gridrt_protocol_pkg.sv
+  ${PROJECT_SOURCE_DIR}/rtl)
