@@ -21,6 +21,13 @@ package gridrt_pkg;
   localparam int unsigned AXIS_W = 10;  // voxels along an axis, 1 .. 512
   localparam int unsigned FRACTION = 12;  // bits behind the point of a lateral position
   localparam logic [ID_W-1:0] NO_ID = '1;
+  // Widths of the structs below, for arrays of them: yosys takes neither $bits of a type in a
+  // package nor fields of an array's element.
+  localparam int unsigned TASK_W = SLOT_W + REF_W + LIST_W + 6 + DIST_W;
+  localparam int unsigned EVENT_W = SLOT_W + 2 + Q_W + ID_W + DIST_W;
+  localparam int unsigned BUNDLE_W = SLOT_W + CELL_W + 3 * 8 + 8 * 6 + 2 * DIST_W;
+  localparam int unsigned INTERRUPT_W = 1 + SLOT_W + DIST_W;
+  localparam int unsigned SLOT_EVENT_W = 1 + SLOT_W;
   /* verilator lint_on UNUSEDPARAM */
 
   // A voxel to be tested for a ray: references [first, first + count) of the PE's memory.

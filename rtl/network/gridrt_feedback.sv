@@ -1,0 +1,203 @@
+// Settles the answer of each ray: gives slots to rays, counts their pending tasks, keeps their best
+// hits, and commits a ray once its traversal is over and every task has answered.
+module gridrt_feedback #(
+    parameter int unsigned SLOTS = 48,
+    parameter int unsigned TUS = 2,
+    parameter int unsigned EXPS = 2,
+    parameter int unsigned PES = 4,
+    parameter int unsigned AHEAD = 4,
+    parameter int unsigned ROB = 128,
+    parameter bit FEEDBACK = 1'b1,  // 0: a ray commits with its first hit (wrong, for a test)
+    localparam int unsigned ENTRY_W = $clog2(ROB),
+    localparam int unsigned SLOT_W = gridrt_pkg::SLOT_W
+) (
+    input  logic                                  clk_i,
+    input  logic                                  rst_ni,
+    // A ray from the setup; alloc_o (with the handshake) tells its slot to all blocks.
+    input  logic                                  ray_valid_i,
+    output logic                                  ray_ready_o,
+    input  logic                                  ray_miss_i,  // P0 = P1: nothing to traverse
+    output gridrt_pkg::slot_event_t               alloc_o,
+    output logic                    [TUS-1:0]     start_o,  // the unit that traverses it
+    input  logic                    [TUS-1:0]     start_ready_i,
+    input  logic                                  room_i,  // of the reorder buffer
+    input  logic                    [ENTRY_W-1:0] entry_i,
+    // Traversal units: tasks made by a step; the traversal of a slot is over.
+    input  logic                    [TUS-1:0]     inc_valid_i,
+    input  logic                    [TUS-1:0][SLOT_W-1:0] inc_slot_i,
+    input  logic                    [TUS-1:0][3:0] inc_count_i,
+    input  logic                    [TUS-1:0]     done_valid_i,
+    input  logic                    [TUS-1:0][SLOT_W-1:0] done_slot_i,
+    output logic                    [SLOTS-1:0]   few_o,  // fewer than AHEAD tasks pending
+    output logic                    [SLOTS-1:0]   none_o,  // no task pending
+    output logic                    [SLOTS-1:0]   walking_o,  // has a ray that is being traversed
+    // Tasks that end without an event, and events.
+    input  logic                    [EXPS+PES-1:0][gridrt_pkg::SLOT_EVENT_W-1:0] drop_i,  // slot_event_t
+    input  logic                    [PES-1:0]     event_valid_i,
+    output logic                    [PES-1:0]     event_ready_o,
+    input  logic                    [PES-1:0][gridrt_pkg::EVENT_W-1:0] event_i,  // event_t
+    output gridrt_pkg::interrupt_t                interrupt_o,
+    // The answer, into the reorder buffer.
+    output logic                                  commit_o,
+    output logic                    [ENTRY_W-1:0] commit_entry_o,
+    output logic                                  commit_hit_o,
+    output logic                    [gridrt_pkg::ID_W-1:0] commit_id_o,
+    output logic                                  wait_o,  // it had a hit while tasks were pending
+    output gridrt_pkg::event_t                    hit_o,  // the hit that is compared now
+    output logic                                  hit_valid_o
+);
+  localparam int unsigned INDEX_W = (SLOTS > 1) ? $clog2(SLOTS) : 1;
+
+  logic free_valid, take, free;
+  logic [SLOT_W-1:0] free_slot, pick_slot;
+  logic [TUS-1:0] unit;
+  logic [SLOTS-1:0] none, many, has_hit;
+  logic [PES-1:0][gridrt_pkg::SLOT_EVENT_W-1:0] event_end;
+  logic [gridrt_pkg::ID_W-1:0] best_id;
+
+  assign ray_ready_o = free_valid && room_i && (start_ready_i & unit) != '0;
+  assign take = ray_valid_i && ray_ready_o;
+  assign alloc_o.valid = take;
+  assign alloc_o.slot = free_slot;
+  assign start_o = (take && !ray_miss_i) ? unit : '0;
+  assign none_o = none;
+
+  gridrt_slots #(
+      .SLOTS(SLOTS),
+      .TUS  (TUS)
+  ) u_slots (
+      .clk_i,
+      .rst_ni,
+      .valid_o(free_valid),
+      .slot_o(free_slot),
+      .unit_o(unit),
+      .take_i(take),
+      .free_i(free),
+      .free_slot_i(pick_slot)
+  );
+
+  gridrt_best #(
+      .SLOTS(SLOTS),
+      .PES(PES),
+      .FEEDBACK(FEEDBACK)
+  ) u_best (
+      .clk_i,
+      .rst_ni,
+      .alloc_i(alloc_o),
+      .event_valid_i,
+      .event_ready_o,
+      .event_i,
+      .end_o(event_end),
+      .interrupt_o,
+      .hit_o,
+      .hit_valid_o,
+      .has_hit_o(has_hit),
+      .read_slot_i(pick_slot),
+      .read_id_o(best_id)
+  );
+
+  gridrt_pending #(
+      .SLOTS(SLOTS),
+      .TUS(TUS),
+      .ENDS(EXPS + 2 * PES),
+      .AHEAD(AHEAD)
+  ) u_pending (
+      .clk_i,
+      .rst_ni,
+      .inc_valid_i,
+      .inc_slot_i,
+      .inc_count_i,
+      .end_i({event_end, drop_i}),
+      .few_o,
+      .none_o(none),
+      .many_o(many)
+  );
+
+  // Slots by state: busy from allocation to commit, over once nothing more is traversed.
+  logic [SLOTS-1:0] busy, over, told, waited;
+  logic [SLOTS-1:0] settled, ready, after, from, pick, pick_q;
+  logic free_q;
+
+  assign settled = busy & over & none;
+  assign walking_o = busy & ~over;
+  assign ready = FEEDBACK ? settled : settled | (busy & has_hit & ~told);
+  assign from = ((ready & after) != '0) ? ready & after : ready;
+  assign pick = from & (~from + SLOTS'(1));
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      busy <= '0;
+      over <= '0;
+      told <= '0;
+      waited <= '0;
+      after <= '0;
+      pick_q <= '0;
+      free_q <= 1'b0;
+      commit_o <= 1'b0;
+    end else begin
+      pick_q   <= pick;
+      free_q   <= (pick & settled) != '0;
+      commit_o <= (pick & ~told) != '0;
+      if (pick != '0) begin
+        after <= ~(pick | (pick - SLOTS'(1)));
+        busy  <= busy & ~(pick & settled);
+        told  <= told | pick;
+      end
+      if (hit_valid_o && many[INDEX_W'(hit_o.slot)]) waited[INDEX_W'(hit_o.slot)] <= 1'b1;
+      for (int unsigned t = 0; t < TUS; t++) begin
+        if (done_valid_i[t]) over[INDEX_W'(done_slot_i[t])] <= 1'b1;
+      end
+      if (take) begin
+        busy[INDEX_W'(free_slot)] <= 1'b1;
+        over[INDEX_W'(free_slot)] <= ray_miss_i;
+        told[INDEX_W'(free_slot)] <= 1'b0;
+        waited[INDEX_W'(free_slot)] <= 1'b0;
+      end
+    end
+  end
+
+  // The clock after the choice: number of the slot, its entry, its answer.
+  always_comb begin
+    pick_slot = '0;
+    for (int unsigned s = 0; s < SLOTS; s++) begin
+      if (pick_q[s]) pick_slot = pick_slot | SLOT_W'(s);
+    end
+  end
+  assign free = free_q;
+
+  gridrt_lutram #(
+      .WIDTH(ENTRY_W),
+      .DEPTH(SLOTS)
+  ) u_entries (
+      .clk_i,
+      .write_i(take),
+      .write_address_i(INDEX_W'(free_slot)),
+      .write_data_i(entry_i),
+      .read_address_i(INDEX_W'(pick_slot)),
+      .read_data_o(commit_entry_o)
+  );
+
+  assign commit_hit_o = (pick_q & has_hit) != '0;
+  assign commit_id_o = commit_hit_o ? best_id : gridrt_pkg::NO_ID;
+  assign wait_o = commit_o && commit_hit_o && (pick_q & waited) != '0;
+
+`ifdef GRIDRT_ASSERT
+  always_ff @(posedge clk_i) begin
+    if (rst_ni) begin
+      assert (!(take && busy[INDEX_W'(free_slot)]));
+      // Nobody speaks of a slot without a ray.
+      assert (!(hit_valid_o && !busy[INDEX_W'(hit_o.slot)]));
+      assert (!(interrupt_o.valid && !busy[INDEX_W'(interrupt_o.slot)]));
+      for (int unsigned t = 0; t < TUS; t++) begin
+        assert (!(inc_valid_i[t] && !busy[INDEX_W'(inc_slot_i[t])]));
+        assert (!(inc_valid_i[t] && over[INDEX_W'(inc_slot_i[t])]));
+        assert (!(done_valid_i[t] && !busy[INDEX_W'(done_slot_i[t])]));
+        assert (!(done_valid_i[t] && over[INDEX_W'(done_slot_i[t])]));
+      end
+      for (int unsigned e = 0; e < EXPS + PES; e++) begin
+        assert (!(drop_i[e][SLOT_W] && !busy[INDEX_W'(drop_i[e])]));
+      end
+    end
+  end
+`endif
+endmodule

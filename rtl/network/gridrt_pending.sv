@@ -1,0 +1,132 @@
+// How many tasks of each ray have not answered yet. The counts are kept as bit planes (plane b
+// holds bit b of every slot), so that adding and subtracting are a few logic operations on whole
+// planes. Ends of tasks count two clocks later: a count may be too high for a moment, never too low.
+module gridrt_pending #(
+    parameter int unsigned SLOTS = 48,
+    parameter int unsigned TUS   = 2,
+    parameter int unsigned ENDS  = 10,  // ports that end tasks, at most 12
+    parameter int unsigned AHEAD = 4    // 1, 2, 4, 8 or 16
+) (
+    input  logic clk_i,
+    input  logic rst_ni,
+    // Tasks that a traversal step makes; a slot belongs to one unit, so ports never meet in a slot.
+    input  logic [TUS-1:0]                          inc_valid_i,
+    input  logic [TUS-1:0][gridrt_pkg::SLOT_W-1:0]  inc_slot_i,
+    input  logic [TUS-1:0][3:0]                     inc_count_i,
+    input  logic [ENDS-1:0][gridrt_pkg::SLOT_EVENT_W-1:0] end_i,  // slot_event_t
+    output logic [SLOTS-1:0]                        few_o,   // fewer than AHEAD
+    output logic [SLOTS-1:0]                        none_o,
+    output logic [SLOTS-1:0]                        many_o   // more than one
+);
+  localparam int unsigned PLANES = 5;  // at most 2 AHEAD - 1 + 8 even if a step was begun too early
+  localparam int unsigned AHEAD_LOG = $clog2(AHEAD);
+
+  if (ENDS < 1 || ENDS > 12) begin : gen_illegal_ends
+    $error("gridrt_pending: ENDS must be 1 to 12");
+  end
+  if (AHEAD < 1 || AHEAD > 16 || (1 << AHEAD_LOG) != AHEAD) begin : gen_illegal_ahead
+    $error("gridrt_pending: AHEAD must be 1, 2, 4, 8 or 16");
+  end
+
+  logic [PLANES-1:0][SLOTS-1:0] count, count_next;
+  logic [3:0][SLOTS-1:0] more, ended, ended_q;
+
+  // What is added, by slot.
+  always_comb begin
+    more = '0;
+    for (int unsigned t = 0; t < TUS; t++) begin
+      if (inc_valid_i[t]) begin
+        for (int unsigned b = 0; b < 4; b++) begin
+          if (inc_count_i[t][b]) more[b] = more[b] | (SLOTS'(1) << inc_slot_i[t]);
+        end
+      end
+    end
+  end
+
+  // How many ports end a task of the slot: carry-save adders over twelve one-hot vectors.
+  gridrt_pkg::slot_event_t ends;
+  logic [11:0][SLOTS-1:0] one;
+  logic [3:0][SLOTS-1:0] sum, carry;
+  logic [SLOTS-1:0] s1, c1, c2, d1, c3, c4, d2, d3;
+  always_comb begin
+    one = '0;
+    ends = '0;
+    for (int unsigned e = 0; e < ENDS; e++) begin
+      ends = end_i[e];
+      if (ends.valid) one[e] = SLOTS'(1) << ends.slot;
+    end
+    for (int unsigned i = 0; i < 4; i++) begin
+      sum[i] = one[3*i] ^ one[3*i+1] ^ one[3*i+2];
+      carry[i] = (one[3*i] & one[3*i+1]) | (one[3*i] & one[3*i+2]) | (one[3*i+1] & one[3*i+2]);
+    end
+    s1 = sum[0] ^ sum[1] ^ sum[2];
+    c1 = (sum[0] & sum[1]) | (sum[0] & sum[2]) | (sum[1] & sum[2]);
+    c2 = carry[0] ^ carry[1] ^ carry[2];
+    d1 = (carry[0] & carry[1]) | (carry[0] & carry[2]) | (carry[1] & carry[2]);
+    ended[0] = s1 ^ sum[3];
+    c3 = s1 & sum[3];
+    c4 = c1 ^ c2 ^ carry[3];
+    d2 = (c1 & c2) | (c1 & carry[3]) | (c2 & carry[3]);
+    ended[1] = c3 ^ c4;
+    d3 = c3 & c4;
+    ended[2] = d1 ^ d2 ^ d3;
+    ended[3] = (d1 & d2) | (d1 & d3) | (d2 & d3);
+  end
+
+  // count + more - ended: carry-save, then a ripple over the planes.
+  logic [PLANES-1:0][SLOTS-1:0] minus, plus, half;
+  logic [SLOTS-1:0] twice, ripple;
+  always_comb begin
+    twice  = '1;  // minus x is not x plus one
+    ripple = '0;
+    for (int unsigned b = 0; b < PLANES; b++) begin
+      minus[b] = (b < 4) ? ~ended_q[b%4] : '1;
+      plus[b] = (b < 4) ? more[b%4] : '0;
+      half[b] = count[b] ^ minus[b] ^ plus[b];
+      count_next[b] = half[b] ^ twice ^ ripple;
+      ripple = (half[b] & twice) | (ripple & (half[b] | twice));
+      twice = (count[b] & minus[b]) | (plus[b] & (count[b] | minus[b]));
+    end
+  end
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      count   <= '0;
+      ended_q <= '0;
+    end else begin
+      count   <= count_next;
+      ended_q <= ended;
+    end
+  end
+
+  logic [SLOTS-1:0] above;
+  always_comb begin
+    above  = '0;
+    many_o = '0;
+    for (int unsigned b = 0; b < PLANES; b++) begin
+      if (b >= AHEAD_LOG) above = above | count[b];
+      if (b >= 1) many_o = many_o | count[b];
+    end
+  end
+  assign few_o  = ~above;
+  assign none_o = ~(many_o | count[0]);
+
+`ifdef GRIDRT_ASSERT
+  // No count wraps: what is subtracted was there, and the sum fits.
+  logic [SLOTS-1:0] borrow, overflow;
+  always_comb begin
+    borrow   = '0;
+    overflow = '0;
+    for (int unsigned b = 0; b < PLANES; b++) begin
+      borrow   = (~count[b] & ~minus[b]) | (borrow & (~count[b] | ~minus[b]));
+      overflow = (count[b] & plus[b]) | (overflow & (count[b] | plus[b]));
+    end
+  end
+  always_ff @(posedge clk_i) begin
+    if (rst_ni) begin
+      assert (borrow == '0);
+      assert (overflow == '0);
+    end
+  end
+`endif
+endmodule
