@@ -1,0 +1,62 @@
+// The tasks that wait for a PE. A task at the head whose ray has been hit before the task's slab
+// is cancelled: it leaves by the drop port while the PE is busy with another.
+module gridrt_queue #(
+    parameter int unsigned SLOTS = 48,
+    parameter int unsigned QUEUE = 16,
+    parameter bit CANCEL = 1'b1
+) (
+    input  logic                     clk_i,
+    input  logic                     rst_ni,
+    input  gridrt_pkg::slot_event_t  alloc_i,
+    input  gridrt_pkg::interrupt_t   interrupt_i,
+    input  logic                     task_valid_i,
+    output logic                     task_ready_o,
+    input  gridrt_pkg::task_t        task_i,
+    output logic                     head_valid_o,  // the head is to be tested
+    input  logic                     head_ready_i,
+    output gridrt_pkg::task_t        head_o,
+    output logic                     drop_valid_o,  // the head is cancelled
+    input  logic                     drop_ready_i,
+    output logic                     waiting_o      // a task is here
+);
+  localparam int unsigned TASK_W = $bits(gridrt_pkg::task_t);
+
+  logic out_valid, cancelled;
+  logic [TASK_W-1:0] out_data;
+  logic [$clog2(QUEUE+1)-1:0] count;
+  gridrt_pkg::task_t head;
+  logic [gridrt_pkg::DIST_W-1:0] limit;
+
+  gridrt_fifo #(
+      .WIDTH(TASK_W),
+      .DEPTH(QUEUE)
+  ) u_tasks (
+      .clk_i,
+      .rst_ni,
+      .in_valid_i (task_valid_i),
+      .in_ready_o (task_ready_o),
+      .in_data_i  (task_i),
+      .out_valid_o(out_valid),
+      .out_ready_i(cancelled ? drop_ready_i : head_ready_i),
+      .out_data_o (out_data),
+      .count_o    (count)
+  );
+  assign head = out_data;
+
+  gridrt_limits #(
+      .SLOTS(SLOTS)
+  ) u_limits (
+      .clk_i,
+      .rst_ni,
+      .alloc_i,
+      .interrupt_i,
+      .slot_i (head.slot),
+      .limit_o(limit)
+  );
+
+  assign cancelled = CANCEL && head.enter > limit;
+  assign head_valid_o = out_valid && !cancelled;
+  assign head_o = head;
+  assign drop_valid_o = out_valid && cancelled;
+  assign waiting_o = count != '0;
+endmodule
