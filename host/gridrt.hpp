@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "hal/error.hpp"
+#include "host/driver/chunked_device.hpp"
 #include "host/driver/device.hpp"
 #include "host/driver/image_options.hpp"
 #include "host/grid/lattice.hpp"
@@ -25,7 +26,7 @@ namespace gridrt {
 class Tracer {
  public:
   /// Cuts the scene into images and loads them on a device; the scene is not needed afterwards.
-  /// Only its positions and triangles count. Errors: those of build_image, open_device and
+  /// Only its positions and triangles count. Errors: those of open_device, build_scene_images and
   /// Device::load.
   static Result<Tracer> open(const Scene& scene, const DeviceOptions& device = {},
                              ImageOptions image = {}) {
@@ -34,12 +35,13 @@ class Tracer {
     if (!opened) return std::unexpected(std::move(opened.error()));
     const protocol::CapabilitiesReport& capabilities = (*opened)->capabilities();
     image.pes = std::min<int>(image.pes, capabilities.pes);
-    auto built = build_image(scene, options_for(image, capabilities));
+    auto built = build_scene_images(scene, options_for(image, capabilities));
     if (!built) return std::unexpected(std::move(built.error()));
-    if (auto loaded = (*opened)->load(*built); !loaded) {
-      return std::unexpected(std::move(loaded.error()));
-    }
-    return Tracer(std::move(*opened), built->lattice());
+    const Lattice lattice = built->front().lattice();
+    auto loaded =
+        load_images(std::move(*opened), std::make_shared<const SceneImages>(std::move(*built)));
+    if (!loaded) return std::unexpected(std::move(loaded.error()));
+    return Tracer(std::move(*loaded), lattice);
   }
 
   /// Answers rays in their order: one Hit a ray, t in units of the ray's direction. Errors: those

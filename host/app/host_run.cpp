@@ -7,14 +7,19 @@
 #include <fmt/format.h>
 
 #include "host/app/npy.hpp"
+#include "host/driver/chunked_device.hpp"
 #include "host/pe/explain.hpp"
 #include "host/render/picture.hpp"
-#include "host/render/stream.hpp"
 
 namespace gridrt {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+/// Rays in memory at a time where every batch costs an upload of each chunk that it meets: a
+/// picture of 640x480 is one wave of some 250 MB.
+constexpr std::size_t kChunkedWave = std::size_t{1} << 19U;
+constexpr std::size_t kChunkedStream = std::size_t{1} << 20U;
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -103,9 +108,9 @@ Result<void> HostRun::load() {
   progress_.clear();
   print_warnings("gridrt-host", prepared_.scene);
   progress_.phase("sending the image");
-  const auto start = Clock::now();
-  if (auto loaded = device_->load(prepared_.image); !loaded) return loaded;
-  statistics_.upload = seconds_since(start);
+  auto ready = load_images(std::move(device_), prepared_.images);
+  if (!ready) return std::unexpected(ready.error());
+  device_ = std::move(*ready);
   statistics_.load = prepared_.load_seconds;
   statistics_.build = prepared_.build_seconds;
   statistics_.device = device_->name();
@@ -114,11 +119,16 @@ Result<void> HostRun::load() {
 
 Result<void> HostRun::trace() {
   progress_.phase("tracing");
+  const auto before = device_->counters();
+  if (!before) return std::unexpected(before.error());
   auto traced = options_.rays.empty() ? trace_picture() : trace_given_rays();
   if (!traced) return traced;
   auto counters = device_->counters();
   if (!counters) return std::unexpected(counters.error());
   statistics_.counters = *counters;
+  // Chunks are loaded while rays wait for them.
+  statistics_.upload = counters->upload_seconds;
+  statistics_.report.trace_seconds -= counters->upload_seconds - before->upload_seconds;
   return {};
 }
 
@@ -136,15 +146,21 @@ ProgressSink HostRun::reporter() {
   return [this](std::uint64_t done, std::uint64_t total) { progress_.update(done, total); };
 }
 
+StreamOptions HostRun::stream_options() const {
+  StreamOptions stream;
+  stream.query = options_.any_hit ? Query::kAnyHit : Query::kClosestHit;
+  stream.threads = options_.threads;
+  if (prepared_.images->chunks.size() > 1) stream.chunk = kChunkedStream;
+  return stream;
+}
+
 Result<void> HostRun::trace_given_rays() {
   auto reader = NpyRayReader::open(options_.rays);
   if (!reader) return std::unexpected(reader.error());
   if (outputs_.hits.is_open()) {
     if (auto done = outputs_.hits.write(hits_header(reader->count())); !done) return done;
   }
-  StreamOptions stream;
-  stream.query = options_.any_hit ? Query::kAnyHit : Query::kClosestHit;
-  stream.threads = options_.threads;
+  const StreamOptions stream = stream_options();
   const RaySource source = [&reader](std::uint64_t, std::span<Ray> rays) {
     return reader->read(rays);
   };
@@ -171,16 +187,16 @@ Result<void> HostRun::trace_picture() {
     render_options.samples = options_.samples;
     render_options.depth = options_.depth;
     render_options.threads = options_.threads;
-    const RenderInput input{prepared_.scene, prepared_.lattice, prepared_.triangles, *camera};
+    if (prepared_.images->chunks.size() > 1) render_options.wave_rays = kChunkedWave;
+    const RenderInput input{prepared_.scene, prepared_.lattice, prepared_.images->triangles,
+                            *camera};
     auto film = render(input, render_options, *device_, statistics_.report, recorder(), reporter());
     if (!film) return std::unexpected(film.error());
     film_ = std::move(*film);
     return {};
   }
   if (options_.hits.empty() && options_.lattice.empty()) return {};  // only one ray to explain
-  StreamOptions stream;
-  stream.query = options_.any_hit ? Query::kAnyHit : Query::kClosestHit;
-  stream.threads = options_.threads;
+  const StreamOptions stream = stream_options();
   return trace_stream(prepared_.lattice, *device_, total,
                       primary_rays(*camera, width, options_.samples, options_.threads), recorder(),
                       stream, statistics_.report, reporter());
@@ -202,9 +218,13 @@ Result<void> HostRun::explain_pixel(const PinholeCamera& camera) {
   explanation_ +=
       fmt::format("segment {} {} {} to {} {} {}, t {} to {}\n", segment.p0.x, segment.p0.y,
                   segment.p0.z, segment.p1.x, segment.p1.y, segment.p1.z, segment.t0, segment.t1);
-  auto events = explain(prepared_.image, segment);
-  if (!events) return std::unexpected(events.error());
-  explanation_ += describe(*events);
+  const std::size_t chunks = prepared_.images->chunks.size();
+  for (std::size_t i = 0; i < chunks; ++i) {
+    auto events = explain(prepared_.images->chunks[i].image, segment);
+    if (!events) return std::unexpected(events.error());
+    if (chunks > 1) explanation_ += fmt::format("chunk {} of {}\n", i + 1, chunks);
+    explanation_ += describe(*events);
+  }
   return {};
 }
 

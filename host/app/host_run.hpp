@@ -13,6 +13,7 @@
 #include "host/app/statistics.hpp"
 #include "host/driver/device.hpp"
 #include "host/image/output_file.hpp"
+#include "host/render/stream.hpp"
 #include "host/render/waves.hpp"
 
 namespace gridrt {
@@ -36,6 +37,7 @@ class HostRun {
   Result<void> open();
   Result<void> load();
   Result<void> trace();
+  [[nodiscard]] StreamOptions stream_options() const;
   Result<void> trace_given_rays();
   Result<void> trace_picture();
   Result<void> explain_pixel(const PinholeCamera& camera);

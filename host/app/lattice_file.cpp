@@ -37,12 +37,13 @@ Result<std::vector<std::byte>> LatticeRecorder::pack(const PreparedScene& prepar
     }
   }
   // The others are what the device was given.
-  for (std::size_t i = 0; i < prepared.triangles.global_ids.size(); ++i) {
-    const std::size_t at = 9 * static_cast<std::size_t>(prepared.triangles.global_ids[i]);
+  const ImageTriangles& triangles = prepared.images->triangles;
+  for (std::size_t i = 0; i < triangles.global_ids.size(); ++i) {
+    const std::size_t at = 9 * static_cast<std::size_t>(triangles.global_ids[i]);
     for (int corner = 0; corner < 3; ++corner) {
       for (int axis = 0; axis < 3; ++axis) {
         q[at + static_cast<std::size_t>((3 * corner) + axis)] =
-            prepared.triangles.triangles[i].v[static_cast<std::size_t>(corner)][axis];
+            triangles.triangles[i].v[static_cast<std::size_t>(corner)][axis];
       }
     }
   }

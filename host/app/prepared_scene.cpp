@@ -47,16 +47,17 @@ Result<void> check_against(const std::string& path, const CutOptions& cut, const
   return {};
 }
 
-Result<void> load_image_file(const std::string& spec, const CutOptions& cut,
-                             PreparedScene& prepared) {
+Result<Image> load_image_file(const std::string& spec, const CutOptions& cut,
+                              PreparedScene& prepared) {
   auto image = read_image(spec);
-  if (!image) return std::unexpected(image.error());
-  prepared.image = std::move(*image);
-  if (auto checked = check_against(spec, cut, prepared.image); !checked) return checked;
-  auto scene = decode_scene(prepared.image);
+  if (!image) return image;
+  if (auto checked = check_against(spec, cut, *image); !checked) {
+    return std::unexpected(checked.error());
+  }
+  auto scene = decode_scene(*image);
   if (!scene) return std::unexpected(scene.error());
   prepared.scene = std::move(*scene);
-  return {};
+  return image;
 }
 
 }  // namespace
@@ -81,10 +82,11 @@ Result<PreparedScene> prepare_scene(const std::string& spec, const CutOptions& c
   PreparedScene prepared;
   const auto start = Clock::now();
   const bool is_image = is_image_path(spec);
+  Image file;
   if (is_image) {
-    if (auto loaded = load_image_file(spec, cut, prepared); !loaded) {
-      return std::unexpected(loaded.error());
-    }
+    auto loaded = load_image_file(spec, cut, prepared);
+    if (!loaded) return std::unexpected(loaded.error());
+    file = std::move(*loaded);
   } else {
     auto scene = load_scene(spec);
     if (!scene) return std::unexpected(scene.error());
@@ -92,17 +94,13 @@ Result<PreparedScene> prepare_scene(const std::string& spec, const CutOptions& c
   }
   const auto loaded = Clock::now();
   prepared.load_seconds = seconds_between(start, loaded);
-  if (!is_image) {
-    ImageOptions options = options_for(image_options(cut, false), capabilities);
-    if (!cut.pes) options.pes = std::min<int>(options.pes, capabilities.pes);
-    auto image = build_image(prepared.scene, options);
-    if (!image) return std::unexpected(image.error());
-    prepared.image = std::move(*image);
-  }
-  auto triangles = decode_triangles(prepared.image);
-  if (!triangles) return std::unexpected(triangles.error());
-  prepared.triangles = std::move(*triangles);
-  prepared.lattice = prepared.image.lattice();
+  ImageOptions options = options_for(image_options(cut, false), capabilities);
+  if (!cut.pes) options.pes = std::min<int>(options.pes, capabilities.pes);
+  auto images =
+      is_image ? whole_image(std::move(file)) : build_scene_images(prepared.scene, options);
+  if (!images) return std::unexpected(images.error());
+  prepared.images = std::make_shared<const SceneImages>(std::move(*images));
+  prepared.lattice = prepared.image().lattice();
   prepared.build_seconds = seconds_between(loaded, Clock::now());
   return prepared;
 }

@@ -10,10 +10,10 @@ namespace gridrt {
 std::string statistics_json(const HostOptions& options, const PreparedScene& prepared,
                             const RunStatistics& statistics) {
   using Json = nlohmann::ordered_json;
-  const auto& header = prepared.image.header;
+  const auto& header = prepared.image().header;
   const RenderReport& report = statistics.report;
   const DeviceCounters& counters = statistics.counters;
-  const glm::ivec3 grid = prepared.image.grid().count;
+  const glm::ivec3 grid = prepared.image().grid().count;
   Json json;
   json["version"] = GRIDRT_VERSION;
   json["scene"] = options.scene;
@@ -26,6 +26,8 @@ std::string statistics_json(const HostOptions& options, const PreparedScene& pre
   json["pes"] = static_cast<int>(header.pes);
   json["mapping"] = mapping_name(static_cast<Mapping>(header.mapping));
   json["layout"] = layout_name(static_cast<protocol::Layout>(header.layout));
+  json["chunks"] = prepared.images->chunks.size();
+  json["uploads"] = counters.uploads;
   if (options.rays.empty()) {
     json["size"] = {options.size.x, options.size.y};
     json["samples"] = options.samples;

@@ -1,5 +1,6 @@
 #include "host/driver/answers.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "host/grid/intersect.hpp"
@@ -11,6 +12,7 @@ Result<Answers> Answers::make(const Image& image) {
   if (!triangles) return std::unexpected(std::move(triangles.error()));
   Answers answers;
   answers.triangles_ = std::move(*triangles);
+  if (image.header.chunks > 1) return answers;
   answers.local_ids_.assign(image.header.triangles, kNoTriangle);
   for (std::size_t i = 0; i < answers.triangles_.global_ids.size(); ++i) {
     const std::uint32_t global = answers.triangles_.global_ids[i];
@@ -23,7 +25,12 @@ Result<Answers> Answers::make(const Image& image) {
 }
 
 std::uint32_t Answers::local_id(std::uint32_t global_id) const {
-  return global_id < local_ids_.size() ? local_ids_[global_id] : kNoTriangle;
+  if (!local_ids_.empty()) {
+    return global_id < local_ids_.size() ? local_ids_[global_id] : kNoTriangle;
+  }
+  const auto found = std::ranges::lower_bound(triangles_.global_ids, global_id);
+  if (found == triangles_.global_ids.end() || *found != global_id) return kNoTriangle;
+  return static_cast<std::uint32_t>(found - triangles_.global_ids.begin());
 }
 
 std::optional<Hit> Answers::hit(const Segment& segment, std::uint32_t id) const {

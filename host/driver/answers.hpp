@@ -26,7 +26,7 @@ class Answers {
 
  private:
   ImageTriangles triangles_;
-  std::vector<std::uint32_t> local_ids_;  ///< by global id
+  std::vector<std::uint32_t> local_ids_;  ///< by global id; empty for a chunk, to spare its size
 };
 
 }  // namespace gridrt

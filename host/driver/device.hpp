@@ -53,6 +53,8 @@ struct DeviceCounters {
   std::uint64_t bytes_out = 0;
   std::uint64_t bytes_in = 0;
   std::uint64_t frames_retried = 0;
+  std::uint64_t uploads = 0;    ///< images loaded
+  double upload_seconds = 0.0;  ///< that took
 };
 
 /// An open device. Results depend on the scene alone, never on the device or its options.

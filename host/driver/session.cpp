@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <utility>
 
 #include <fmt/format.h>
@@ -56,7 +57,11 @@ Result<void> Session::load(const Image& image) {
   if (auto fits = check_fits(image, capabilities_); !fits) return fits;
   Result<Answers> answers = Answers::make(image);
   if (!answers) return std::unexpected(std::move(answers.error()));
+  const auto start = std::chrono::steady_clock::now();
   if (auto done = upload(connection_, image, capabilities_, retries_); !done) return done;
+  upload_seconds_ +=
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  ++uploads_;
   layout_ = static_cast<protocol::Layout>(image.header.layout);
   answers_ = std::move(*answers);
   return {};
@@ -205,6 +210,8 @@ Result<DeviceCounters> Session::counters() {
   c.bytes_out = connection_.bytes_out();
   c.bytes_in = connection_.bytes_in();
   c.frames_retried = retries_;
+  c.uploads = uploads_;
+  c.upload_seconds = upload_seconds_;
   return c;
 }
 

@@ -70,6 +70,8 @@ class Session final : public Device {
   protocol::Layout layout_ = protocol::Layout::kNone;
   std::optional<Answers> answers_;  ///< of the loaded image
   std::uint64_t retries_ = 0;
+  std::uint64_t uploads_ = 0;
+  double upload_seconds_ = 0.0;
 };
 
 }  // namespace gridrt

@@ -11,14 +11,9 @@ namespace {
 
 constexpr int kBoxesPerPe = 16;
 
-struct Box {
-  glm::ivec3 lo{0};  ///< first voxel
-  glm::ivec3 hi{0};  ///< one past the last
-};
-
 /// References in the slabs of a box along one axis.
 std::vector<std::uint64_t> slab_weights(const VoxelGrid& grid, const VoxelLists& lists,
-                                        const Box& box, int axis) {
+                                        const VoxelBox& box, int axis) {
   std::vector<std::uint64_t> weights(static_cast<std::size_t>(box.hi[axis] - box.lo[axis]), 0);
   for (int z = box.lo.z; z < box.hi.z; ++z) {
     for (int y = box.lo.y; y < box.hi.y; ++y) {
@@ -33,45 +28,54 @@ std::vector<std::uint64_t> slab_weights(const VoxelGrid& grid, const VoxelLists&
   return weights;
 }
 
-/// Splits `box` into `parts` boxes of about equal reference counts, along its longest axis first.
-/// `parts` halves each time, so the recursion is log2(parts) deep.
-void split(const VoxelGrid& grid, const VoxelLists& lists, const Box& box, int parts,
-           std::vector<Box>& out) {
+int longest_axis(const VoxelBox& box) {
   int axis = 0;
   for (int a = 1; a < 3; ++a) {
     if (box.hi[a] - box.lo[a] > box.hi[axis] - box.lo[axis]) axis = a;
   }
-  const int length = box.hi[axis] - box.lo[axis];
-  if (parts <= 1 || length <= 1) {
+  return axis;
+}
+
+/// Splits `box` into `parts` boxes of about equal reference counts, along its longest axis first.
+/// `parts` halves each time, so the recursion is log2(parts) deep.
+void split(const VoxelGrid& grid, const VoxelLists& lists, const VoxelBox& box, int parts,
+           std::vector<VoxelBox>& out) {
+  const int axis = longest_axis(box);
+  if (parts <= 1 || box.hi[axis] - box.lo[axis] <= 1) {
     out.push_back(box);
     return;
   }
-  const std::vector<std::uint64_t> weights = slab_weights(grid, lists, box, axis);
-  std::uint64_t total = 0;
-  for (const std::uint64_t w : weights) total += w;
   const int left_parts = parts / 2;
-  // The cut after which the left side holds nearest to its share.
-  const double share = static_cast<double>(total) * left_parts / parts;
-  double best = std::numeric_limits<double>::infinity();
-  int cut = 1;
-  std::uint64_t sum = 0;
-  for (int i = 1; i < length; ++i) {
-    sum += weights[static_cast<std::size_t>(i - 1)];
-    const double miss = std::abs(static_cast<double>(sum) - share);
-    if (miss < best) {
-      best = miss;
-      cut = i;
-    }
-  }
-  Box left = box;
-  Box right = box;
-  left.hi[axis] = box.lo[axis] + cut;
-  right.lo[axis] = left.hi[axis];
+  const auto [left, right] = cut_box(grid, lists, box, static_cast<double>(left_parts) / parts);
   split(grid, lists, left, left_parts, out);
   split(grid, lists, right, parts - left_parts, out);
 }
 
 }  // namespace
+
+std::pair<VoxelBox, VoxelBox> cut_box(const VoxelGrid& grid, const VoxelLists& lists,
+                                      const VoxelBox& box, double share) {
+  const int axis = longest_axis(box);
+  const std::vector<std::uint64_t> weights = slab_weights(grid, lists, box, axis);
+  std::uint64_t total = 0;
+  for (const std::uint64_t w : weights) total += w;
+  const double wanted = static_cast<double>(total) * share;
+  double best = std::numeric_limits<double>::infinity();
+  int cut = 1;
+  std::uint64_t sum = 0;
+  for (int i = 1; i < box.hi[axis] - box.lo[axis]; ++i) {
+    sum += weights[static_cast<std::size_t>(i - 1)];
+    const double miss = std::abs(static_cast<double>(sum) - wanted);
+    if (miss < best) {
+      best = miss;
+      cut = i;
+    }
+  }
+  std::pair<VoxelBox, VoxelBox> halves{box, box};
+  halves.first.hi[axis] = box.lo[axis] + cut;
+  halves.second.lo[axis] = halves.first.hi[axis];
+  return halves;
+}
 
 Result<Mapping> parse_mapping(std::string_view name) {
   for (const Mapping m : {Mapping::kBoxes, Mapping::kContiguous, Mapping::kVoxel}) {
@@ -100,7 +104,7 @@ Result<std::vector<std::uint8_t>> deal_voxels(const VoxelGrid& grid, const Voxel
                 fmt::format("choose between 1 and {}", kMaxPes));
   }
   std::vector<std::uint8_t> owner(grid.cells(), 0);
-  std::vector<Box> boxes;
+  std::vector<VoxelBox> boxes;
   if (mapping != Mapping::kVoxel) {
     split(grid, lists, {glm::ivec3{0}, grid.count},
           mapping == Mapping::kBoxes ? kBoxesPerPe * pes : pes, boxes);

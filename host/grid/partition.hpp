@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "hal/error.hpp"
@@ -17,6 +18,17 @@ enum class Mapping {
   kVoxel,       ///< voxel by voxel along the diagonal, (i + j + k) mod P
 };
 inline constexpr int kMaxPes = 64;
+
+/// Voxels lo to hi - 1.
+struct VoxelBox {
+  glm::ivec3 lo{0};
+  glm::ivec3 hi{0};  ///< one past the last
+};
+
+/// Cuts a box of more than one voxel in two, across its longest axis, where the first of both holds
+/// nearest to `share` (in (0, 1)) of its references.
+std::pair<VoxelBox, VoxelBox> cut_box(const VoxelGrid& grid, const VoxelLists& lists,
+                                      const VoxelBox& box, double share);
 
 Result<Mapping> parse_mapping(std::string_view name);
 std::string_view mapping_name(Mapping mapping);

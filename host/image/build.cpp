@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include "host/image/image.hpp"
+#include "host/image/lattice_scene.hpp"
 #include "host/image/limits.hpp"
-#include "host/image/pack.hpp"
 #include "host/image/scene_section.hpp"
 #include "host/image/weld.hpp"
 
@@ -13,8 +13,6 @@ namespace gridrt {
 namespace {
 
 constexpr std::size_t kMostTriangles = 0x7FFFFFFFU;  ///< global ids are int32 in results
-constexpr double kDensity = 4.0;                     ///< voxels a triangle
-constexpr double kCoarser = 0.75;                    ///< from one try to the next
 constexpr int kTries = 30;                           ///< down to 1 voxel for 1,000 triangles
 
 /// Snaps the scene and leaves out degenerate triangles.
@@ -38,37 +36,11 @@ LocalTriangles make_local(const Scene& scene, const Lattice& lattice) {
   return local;
 }
 
-/// Bins, deals and packs for one grid.
-Result<Image> build_with_grid(const LocalTriangles& local, Cut cut, const VoxelGrid& grid) {
-  cut.grid = grid;
-  cut.lists = bin_triangles(grid, local.triangles);
-  auto owners = deal_voxels(grid, cut.lists, cut.mapping, cut.pes);
-  if (!owners) return std::unexpected(std::move(owners.error()));
-  cut.owners = std::move(*owners);
-  return pack_image(local, cut);
-}
-
-/// The finest of a few grids that the memories can hold. Those of the wide layout are never
-/// exceeded by a chosen grid.
-Result<Image> build_with_chosen_grid(const LocalTriangles& local, const Cut& cut) {
-  Result<Image> image = fail(ErrorKind::kInternal, "no grid was tried");
-  double density = kDensity;
-  for (int i = 0; i < kTries; ++i, density *= kCoarser) {
-    const auto grid = make_grid(cut.lattice, local.triangles.size(), std::nullopt, density);
-    if (!grid) return std::unexpected(grid.error());
-    image = build_with_grid(local, cut, *grid);
-    if (image || image.error().kind != ErrorKind::kLimit ||
-        cut.memory == memory_sizes(protocol::Layout::kWide)) {
-      break;
-    }
-  }
-  return image;
-}
-
 }  // namespace
 
-Result<Image> build_image(const Scene& scene, const ImageOptions& options) {
-  Cut cut;
+Result<LatticeScene> make_lattice_scene(const Scene& scene, const ImageOptions& options) {
+  LatticeScene out;
+  Cut& cut = out.cut;
   cut.mapping = options.mapping;
   cut.pes = options.pes;
   cut.layout = options.layout == protocol::Layout::kCompact ? protocol::Layout::kCompact
@@ -86,21 +58,53 @@ Result<Image> build_image(const Scene& scene, const ImageOptions& options) {
   auto lattice = make_lattice(scene.positions, scene.triangles, options.bits);
   if (!lattice) return std::unexpected(std::move(lattice.error()));
   cut.lattice = *lattice;
+  if (auto good = check_widths(cut.layout, options.bits, options.pes); !good) {
+    return std::unexpected(std::move(good.error()));
+  }
+  out.local = make_local(scene, *lattice);
+  return out;
+}
 
-  const LocalTriangles local = make_local(scene, *lattice);
-  auto good = check_widths(cut.layout, options.bits, options.pes);
-  if (good) {
-    good = check_scene_limits(cut.layout, cut.memory, options.pes, local.triangles.size());
+Result<Image> pack_with_grid(const LatticeScene& scene, const VoxelGrid& grid) {
+  Cut cut = scene.cut;
+  cut.grid = grid;
+  cut.lists = bin_triangles(grid, scene.local.triangles);
+  auto owners = deal_voxels(grid, cut.lists, cut.mapping, cut.pes);
+  if (!owners) return std::unexpected(std::move(owners.error()));
+  cut.owners = std::move(*owners);
+  return pack_image(scene.local, cut);
+}
+
+Result<Image> pack_whole(const LatticeScene& scene, std::optional<glm::ivec3> grid) {
+  const Cut& cut = scene.cut;
+  const std::size_t triangles = scene.local.triangles.size();
+  if (auto good = check_scene_limits(cut.layout, cut.memory, cut.pes, triangles); !good) {
+    return std::unexpected(std::move(good.error()));
   }
-  if (!good) return std::unexpected(std::move(good.error()));
-  Result<Image> image;
-  if (options.grid) {
-    const auto grid = make_grid(*lattice, local.triangles.size(), options.grid);
-    if (!grid) return std::unexpected(grid.error());
-    image = build_with_grid(local, cut, *grid);
-  } else {
-    image = build_with_chosen_grid(local, cut);
+  if (grid) {
+    const auto asked = make_grid(cut.lattice, triangles, grid);
+    if (!asked) return std::unexpected(asked.error());
+    return pack_with_grid(scene, *asked);
   }
+  Result<Image> image = fail(ErrorKind::kInternal, "no grid was tried");
+  double density = kGridDensity;
+  for (int i = 0; i < kTries; ++i, density *= kCoarserGrid) {
+    const auto chosen = make_grid(cut.lattice, triangles, std::nullopt, density);
+    if (!chosen) return std::unexpected(chosen.error());
+    image = pack_with_grid(scene, *chosen);
+    // The memories of the wide layout are never exceeded by a chosen grid.
+    if (image || image.error().kind != ErrorKind::kLimit ||
+        cut.memory == memory_sizes(protocol::Layout::kWide)) {
+      break;
+    }
+  }
+  return image;
+}
+
+Result<Image> build_image(const Scene& scene, const ImageOptions& options) {
+  const auto snapped = make_lattice_scene(scene, options);
+  if (!snapped) return std::unexpected(snapped.error());
+  Result<Image> image = pack_whole(*snapped, options.grid);
   if (!image || !options.with_scene) return image;
 
   auto bytes = pack_scene(scene);

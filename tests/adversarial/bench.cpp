@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "host/driver/chunked_device.hpp"
 #include "host/driver/image_options.hpp"
 #include "tests/adversarial/bridge.hpp"
 #include "tests/adversarial/devices.hpp"
@@ -79,7 +80,7 @@ Configuration random_configuration(Random& random, int bits) {
                                              Mapping::kVoxel};
   Configuration s;
   const std::vector<std::string> asked = asked_devices();
-  s.device.name = random.chance(0.7) ? "seq" : "omp";
+  s.device.name = random.chance(0.6) ? "seq" : random.chance(0.7) ? "omp" : "seq-board";
   if (!asked.empty()) s.device.name = asked[random.below(asked.size())];
   s.device.threads = random.between(1, 3);
   s.device.rays_per_frame = kBatches[1 + random.below(4)];
@@ -123,27 +124,23 @@ Tally& Tally::operator+=(const Tally& other) {
   return *this;
 }
 
-Result<Image> Bench::build(const Scene& scene) {
+Result<SceneImages> Bench::build(const Scene& scene) {
   const protocol::CapabilitiesReport& can = device_->capabilities();
   ImageOptions& wanted = configuration_.image;
   wanted.bits = std::min<int>(wanted.bits, can.max_bits);
   wanted.pes = std::min<int>(wanted.pes, can.pes);
-  const auto speaks = [&](protocol::Layout layout) {
-    return ((can.layouts >> static_cast<unsigned>(layout)) & 1U) != 0;
-  };
-  if (!speaks(wanted.layout)) wanted.layout = protocol::Layout::kNone;
+  if (((can.layouts >> static_cast<unsigned>(wanted.layout)) & 1U) == 0) {
+    wanted.layout = protocol::Layout::kNone;
+  }
+  const MemorySizes memory = wanted.memory.value_or(memory_sizes(can));
   wanted = options_for(wanted, can);
-  Result<Image> image = build_image(scene, wanted);
-  const auto too_large = [&] { return !image && image.error().kind == ErrorKind::kLimit; };
-  if (too_large() && speaks(protocol::Layout::kWide)) {
-    wanted.layout = protocol::Layout::kWide;
-    image = build_image(scene, wanted);
-  }
-  if (too_large()) {
+  wanted.memory = smaller_of(memory, *wanted.memory);
+  Result<SceneImages> images = build_scene_images(scene, wanted);
+  if (!images && images.error().kind == ErrorKind::kLimit && wanted.grid) {
     wanted.grid.reset();
-    image = build_image(scene, wanted);
+    images = build_scene_images(scene, wanted);
   }
-  return image;
+  return images;
 }
 
 Result<Bench> Bench::open(const Scene& scene, const Configuration& configuration) {
@@ -152,13 +149,14 @@ Result<Bench> Bench::open(const Scene& scene, const Configuration& configuration
   auto device = open_device(configuration.device);
   if (!device) return std::unexpected(std::move(device.error()));
   bench.device_ = std::move(*device);
-  const auto image = bench.build(scene);
-  if (!image) return std::unexpected(image.error());
-  bench.lattice_ = image->lattice();
-  bench.grid_ = image->grid();
-  if (auto loaded = bench.device_->load(*image); !loaded) {
-    return std::unexpected(std::move(loaded.error()));
-  }
+  auto images = bench.build(scene);
+  if (!images) return std::unexpected(std::move(images.error()));
+  bench.images_ = std::make_shared<const SceneImages>(std::move(*images));
+  bench.lattice_ = bench.images_->front().lattice();
+  bench.grid_ = bench.images_->front().grid();
+  auto loaded = load_images(std::move(bench.device_), bench.images_);
+  if (!loaded) return std::unexpected(std::move(loaded.error()));
+  bench.device_ = std::move(*loaded);
   if (rays_per_traced_one() > 1) {
     DeviceOptions options;
     options.name = "seq";
@@ -170,8 +168,8 @@ Result<Bench> Bench::open(const Scene& scene, const Configuration& configuration
     wide.memory.reset();
     const auto whole = build_image(scene, wide);
     if (!whole) return std::unexpected(whole.error());
-    if (auto loaded = bench.stand_in_->load(*whole); !loaded) {
-      return std::unexpected(std::move(loaded.error()));
+    if (auto done = bench.stand_in_->load(*whole); !done) {
+      return std::unexpected(std::move(done.error()));
     }
   }
   const auto search = scene.triangles.size() > 100 ? truth::Search::kPruned : truth::Search::kAll;

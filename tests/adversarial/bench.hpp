@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "host/driver/device.hpp"
-#include "host/image/image.hpp"
+#include "host/image/chunks.hpp"
 #include "tests/adversarial/random.hpp"
 #include "tests/truth/tracer.hpp"
 
@@ -20,8 +20,8 @@ struct Configuration {
   ImageOptions image;
 };
 
-/// seq or omp, or one of those that GRIDRT_DEVICES names; 1, 2, 4 or 8 PEs; any mapping, grid,
-/// batch size, thread count and layout.
+/// seq, omp or seq-board, or one of those that GRIDRT_DEVICES names; 1, 2, 4 or 8 PEs; any mapping,
+/// grid, batch size, thread count and layout.
 Configuration random_configuration(Random& random, int bits);
 
 /// One line that tells a configuration.
@@ -41,16 +41,17 @@ struct Tally {
 /// An open device with a loaded scene, and the truth of that scene.
 class Bench {
  public:
-  /// What goes beyond the device (lattice bits, PEs, layout) is cut down to it;
-  /// `configuration.image.layout` compact falls back to wide where the scene does not fit; a grid
-  /// too fine for the lattice falls back to the default one. Of the rays the device gets the part
-  /// that GRIDRT_FRACTION says; `seq` answers the others.
+  /// What goes beyond the device (lattice bits, PEs, layout) is cut down to it, a scene that does
+  /// not fit is loaded in chunks, and a grid too fine for the lattice or the device falls back to
+  /// the default one. Of the rays the device gets the part that GRIDRT_FRACTION says; `seq` answers
+  /// the others.
   static Result<Bench> open(const Scene& scene, const Configuration& configuration);
 
   [[nodiscard]] const truth::Tracer& truth() const { return *truth_; }
   [[nodiscard]] const Lattice& lattice() const { return lattice_; }
   [[nodiscard]] const VoxelGrid& grid() const { return grid_; }
   [[nodiscard]] Device& device() const { return *device_; }
+  [[nodiscard]] const SceneImages& images() const { return *images_; }
 
   /// Rays in scene units: end points, parameters, closest hits (id, t, u, v) and any hits are all
   /// compared. Returns the device's closest hits.
@@ -64,7 +65,7 @@ class Bench {
                          std::span<const truth::Segment> expected, Tally& tally) const;
 
  private:
-  Result<Image> build(const Scene& scene);
+  Result<SceneImages> build(const Scene& scene);
   [[nodiscard]] Result<void> trace(std::span<const Segment> segments, Query query,
                                    std::span<Hit> hits) const;
 
@@ -72,6 +73,7 @@ class Bench {
   Lattice lattice_;
   VoxelGrid grid_;
   std::unique_ptr<truth::Tracer> truth_;
+  std::shared_ptr<const SceneImages> images_;
   std::unique_ptr<Device> device_;
   std::unique_ptr<Device> stand_in_;  ///< seq, if the device does not get all rays
 };

@@ -23,6 +23,8 @@ target_link_libraries(adversarial_uneven PRIVATE gridrt_scene)
 target_compile_definitions(adversarial_uneven
   PRIVATE GRIDRT_SCENES="${PROJECT_SOURCE_DIR}/../shared/scenes")
 gridrt_cases(secondary secondary_test.cpp walk.cpp)
+gridrt_cases(chunks chunks_test.cpp)
+target_link_libraries(adversarial_chunks PRIVATE gridrt_pe gridrt_image)
 gridrt_cases(skip skip_test.cpp)
 target_link_libraries(adversarial_skip PRIVATE gridrt_pe gridrt_image)
 

@@ -87,7 +87,9 @@ class Input(ProgramTest):
         self.image("s.grt", "-o", "t.grt", code=2)
 
     def test_too_large_for_a_layout_is_5(self):
-        self.host("builtin:sphere?subdivisions=6", *SMALL, "-o", "a.png", "--layout", "compact", code=5)
+        done = self.image("builtin:sphere?subdivisions=6", "-o", "a.grt", "--layout", "compact", code=5)
+        self.assertIn("81920 triangles", done.stderr)
+        self.assertIn("16384", done.stderr)
         self.host("builtin:cube", *SMALL, "-o", "a.png", "--layout", "compact", "--bits", "20", code=5)
         self.assertEqual(self.entries(), [])
 

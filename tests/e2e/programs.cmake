@@ -1,5 +1,5 @@
 # The programs from outside: command lines, files, exit codes.
-foreach(name IN ITEMS pictures rays failures)
+foreach(name IN ITEMS pictures rays failures chunks)
   add_test(NAME e2e.${name} COMMAND /usr/bin/python3 -B ${CMAKE_CURRENT_LIST_DIR}/${name}_test.py)
   set_tests_properties(e2e.${name} PROPERTIES
     LABELS e2e TIMEOUT 600
