@@ -155,6 +155,40 @@ TEST(Case36, OneVoxelSharedByManyChunks) {
   report("case 36, a voxel shared by chunks", tally);
 }
 
+// Where a voxel's list is shared, the chunks that hold its later pieces may answer first.
+TEST(Case36, AnyOrderOfChunksGivesTheSameAnswers) {
+  Tally tally;
+  Random random(364);
+  std::size_t starts = 0;
+  for (int round = 0; round < 6; ++round) {
+    Scene scene = lattice_soup(200, 3, random);
+    add_scene(scene, Scene(scene));
+    Configuration c = tiny_configuration(random, 17);
+    c.image.memory =
+        MemorySizes{.triangles = 30, .vertices = 60, .references = 30, .cells = 8, .blocks = 1};
+    c.image.grid.reset();
+    with_bench(scene, c, [&](const Bench& bench) {
+      ASSERT_GT(bench.images().chunks.size(), 4U);
+      const auto segments = exact_segments(bench.truth(), 800, random);
+      const auto expected = bench.check_segments(segments, tally);
+      auto images = std::make_shared<SceneImages>(bench.images());
+      std::ranges::reverse(images->chunks);
+      auto device = open_device(c.device);
+      ASSERT_TRUE(device);
+      const auto turned = load_images(std::move(*device), images);
+      ASSERT_TRUE(turned) << turned.error().message;
+      std::vector<Hit> hits(segments.size());
+      ASSERT_TRUE((*turned)->trace(segments, Query::kClosestHit, hits));
+      for (std::size_t i = 0; i < hits.size(); ++i) {
+        ASSERT_EQ(hits[i].id, expected[i].id) << "segment " << i;
+        starts += hits[i].id >= 0 && hits[i].t == segments[i].t0 ? 1 : 0;
+      }
+    });
+  }
+  EXPECT_GT(starts, 20U) << "too few rays start on a triangle";
+  report("case 36, chunks in reverse", tally);
+}
+
 TEST(Case36, MoreTrianglesInAVoxelThanTheBoardCanName) {
   Tally tally;
   Random random(21);
