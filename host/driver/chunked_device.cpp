@@ -114,7 +114,7 @@ std::vector<std::size_t> ChunkedDevice::visiting_order(const Work& work) const {
   if (work.query == Query::kAnyHit && loaded_) depth[*loaded_] = -1.0;
   std::vector<std::size_t> order(depth.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::stable_sort(order, {}, [&](std::size_t c) { return depth[c]; });
+  std::ranges::sort(order, {}, [&](std::size_t c) { return std::pair(depth[c], c); });
   return order;
 }
 

@@ -203,7 +203,8 @@ Result<void> Chunker::divide(const Part& part, std::uint64_t pieces, Error why) 
     }
     halves.first.last = halves.second.first = part.first + (last - part.first) / 2;
   } else {
-    const double share = static_cast<double>(pieces / 2) / static_cast<double>(pieces);
+    const std::uint64_t left = pieces / 2;
+    const double share = static_cast<double>(left) / static_cast<double>(pieces);
     std::tie(halves.first.box, halves.second.box) = cut_box(cut_.grid, lists_, part.box, share);
   }
   if (auto done = cut(halves.first); !done) return done;
