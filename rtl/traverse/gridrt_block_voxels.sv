@@ -1,0 +1,113 @@
+// Which voxels of a 2x2x2 block a ray meets, and which halves of them, from the half-voxels in which
+// it is at the five half-slab faces: clocks 5 and 6 of a step. Within a half-slab it meets every half
+// that it has on one lateral axis together with every half on the other, a superset of the truth.
+module gridrt_block_voxels (
+    input  logic                clk_i,
+    input  logic [1:0]          valid_i,       // of clocks 6 and 5
+    input  logic [1:0]          s5_axis_i,     // dominant
+    input  logic [2:0]          s5_neg_i,      // mirrored axes
+    input  logic [1:0]          s5_first_i,    // half-slabs that hold a part of the segment
+    input  logic [1:0]          s5_last_i,
+    input  logic [1:0]          s5_sub_i,      // block looked at: bit 0 b-neighbour, bit 1 c-neighbour
+    input  logic [1:0][4:0][2:0] s5_sample_i,  // from the entry block's first half, 0 .. 7
+    output logic [3:1]          s6_touched_o,  // neighbours (as s5_sub_i) met in this block-slab
+    output logic [7:0]          s7_met_o,      // bits x + 2 y + 4 z, not mirrored
+    output logic [7:0][5:0]     s7_halves_o    // bits 2 axis + half, not mirrored
+);
+  // Clock 5: halves of this block by half-slab, then turned back from mirrored to actual ones.
+  logic [3:0] holds;
+  logic [2:0] neg;  // dominant, b, c
+  logic [1:0][3:0][3:0] halves;  // lateral axis, half-slab, half
+  logic [1:0][3:0][1:0] blocks;  // lateral axis, half-slab, block
+  logic [3:1] touched;
+  logic [3:0] actual_holds;
+  logic [1:0][3:0][3:0] actual;
+  always_comb begin
+    case (s5_axis_i)
+      2'd0: neg = s5_neg_i;
+      2'd1: neg = {s5_neg_i[0], s5_neg_i[2:1]};
+      default: neg = {s5_neg_i[1:0], s5_neg_i[2]};
+    endcase
+    touched = '0;
+    halves = '0;
+    blocks = '0;
+    for (int unsigned i = 0; i < 4; i++) begin
+      holds[i] = 2'(i) >= s5_first_i && 2'(i) <= s5_last_i;
+      for (int unsigned n = 0; n < 2; n++) begin
+        for (int unsigned k = 0; k < 2; k++) begin
+          if (s5_sample_i[n][i+k][2] == s5_sub_i[n]) halves[n][i][s5_sample_i[n][i+k][1:0]] = 1'b1;
+          blocks[n][i][s5_sample_i[n][i+k][2]] = 1'b1;
+        end
+      end
+      for (int unsigned s = 1; s < 4; s++) begin
+        if (holds[i] && blocks[0][i][s%2] && blocks[1][i][s/2]) touched[s] = 1'b1;
+      end
+    end
+    for (int unsigned i = 0; i < 4; i++) begin
+      actual_holds[i] = neg[0] ? holds[3-i] : holds[i];
+      for (int unsigned n = 0; n < 2; n++) begin
+        for (int unsigned h = 0; h < 4; h++) begin
+          actual[n][i][h] = halves[n][neg[0] ? 3 - i : i][neg[n+1] ? 3 - h : h];
+        end
+      end
+    end
+  end
+  logic [1:0] s6_axis;
+  logic [3:0] s6_holds;
+  logic [1:0][3:0][3:0] s6_halves;
+  always_ff @(posedge clk_i) begin
+    if (valid_i[0]) begin
+      s6_axis <= s5_axis_i;
+      s6_holds <= actual_holds;
+      s6_halves <= actual;
+      s6_touched_o <= touched;
+    end
+  end
+
+  // Clock 6: voxels (a, b, c) and their halves, then in the order x, y, z.
+  logic [7:0] met;  // a + 2 b + 4 c
+  logic [7:0][5:0] mask;  // a, b, c
+  logic [7:0] turned;
+  logic [7:0][5:0] turned_mask;
+  logic hit;
+  always_comb begin
+    met = '0;
+    mask = '0;
+    hit = 1'b0;
+    for (int unsigned v = 0; v < 8; v++) begin
+      for (int unsigned j = 0; j < 2; j++) begin
+        hit = s6_holds[2*(v%2)+j] && s6_halves[0][2*(v%2)+j][2*((v/2)%2)+:2] != '0 &&
+              s6_halves[1][2*(v%2)+j][2*(v/4)+:2] != '0;
+        if (hit) begin
+          met[v] = 1'b1;
+          mask[v][j] = 1'b1;
+          mask[v][3:2] = mask[v][3:2] | s6_halves[0][2*(v%2)+j][2*((v/2)%2)+:2];
+          mask[v][5:4] = mask[v][5:4] | s6_halves[1][2*(v%2)+j][2*(v/4)+:2];
+        end
+      end
+    end
+    // v: a voxel by x, y, z. Its bits in the order a, b, c are rotated by the dominant axis.
+    for (int unsigned v = 0; v < 8; v++) begin
+      case (s6_axis)
+        2'd0: begin
+          turned[v] = met[v];
+          turned_mask[v] = mask[v];
+        end
+        2'd1: begin  // a is y, b is z, c is x
+          turned[v] = met[(v/2)%4+4*(v%2)];
+          turned_mask[v] = {mask[(v/2)%4+4*(v%2)][3:0], mask[(v/2)%4+4*(v%2)][5:4]};
+        end
+        default: begin  // a is z, b is x, c is y
+          turned[v] = met[v/4+2*(v%4)];
+          turned_mask[v] = {mask[v/4+2*(v%4)][1:0], mask[v/4+2*(v%4)][5:2]};
+        end
+      endcase
+    end
+  end
+  always_ff @(posedge clk_i) begin
+    if (valid_i[1]) begin
+      s7_met_o <= turned;
+      s7_halves_o <= turned_mask;
+    end
+  end
+endmodule
