@@ -2,6 +2,8 @@
 
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -30,6 +32,20 @@ Result<void> open_output(const std::string& path, OutputFile& file) {
   auto created = OutputFile::create(path);
   if (!created) return std::unexpected(created.error());
   file = std::move(*created);
+  return {};
+}
+
+/// GRIDRT_PES_WITHOUT=interrupt or feedback: switches for measurements (docs/schedules.md).
+Result<void> read_pes_switches(DeviceOptions& device) {
+  const char* without = std::getenv("GRIDRT_PES_WITHOUT");
+  if (without == nullptr || *without == 0) return {};
+  const std::string_view word(without);
+  device.pes_interrupt = word != "interrupt";
+  device.pes_feedback = word != "feedback";
+  if (device.pes_interrupt && device.pes_feedback) {
+    return fail(ErrorKind::kUsage,
+                fmt::format("GRIDRT_PES_WITHOUT={}: expected interrupt or feedback", word));
+  }
   return {};
 }
 
@@ -86,6 +102,7 @@ Result<void> HostRun::open() {
   device.schedule = options_.schedule;
   device.threads = options_.threads;
   device.rays_per_frame = options_.batch;
+  if (auto read = read_pes_switches(device); !read) return read;
   auto opened = open_device(device);
   if (!opened) return std::unexpected(opened.error());
   device_ = std::move(*opened);

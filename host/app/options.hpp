@@ -36,7 +36,7 @@ enum class ProgressMode { kAuto, kOn, kOff };
 struct HostOptions {
   std::string scene;
   std::string device = "auto";
-  std::string schedule = "rays";
+  std::string schedule;  ///< empty: the device's own
   bool list_devices = false;
   int threads = 0;            ///< 0: one a core
   std::size_t batch = 32768;  ///< rays a frame

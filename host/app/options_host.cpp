@@ -79,7 +79,7 @@ void add_options(CLI::App& app, HostOptions& options, HostTexts& texts) {
   add(kDevice, "--device", options.device, "NAME",
       "auto, usb[:SERIAL], sim, omp (threads), mpi or seq (one thread, the reference)");
   add(kDevice, "--schedule", options.schedule, "NAME",
-      "of software PEs: rays (default), pes or paper");
+      "how software PEs share the work: rays (default), pes (default of mpi) or paper");
   add(kDevice, "--threads", texts.threads, "N", "threads of omp and of the shading (default: all)");
   add(kDevice, "--batch", texts.batch, "N", "rays in a frame to the device (default 32768)");
   app.add_flag("--list-devices", options.list_devices, "list the devices that there are")

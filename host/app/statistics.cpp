@@ -6,10 +6,43 @@
 #include "host/grid/partition.hpp"
 
 namespace gridrt {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// What the workers of a software device have exchanged, and what working together cost.
+void add_exchange(Json& json, const DeviceCounters& counters) {
+  const protocol::ExchangeReport& e = counters.exchange;
+  const protocol::AheadReport& a = counters.ahead;
+  const auto seconds = [](std::uint64_t ns) { return static_cast<double>(ns) * 1e-9; };
+  const auto per = [](std::uint64_t count, double of) -> Json {
+    if (of <= 0.0) return nullptr;
+    return static_cast<double>(count) / of;
+  };
+  const auto rays = static_cast<double>(counters.rays);
+  const std::uint64_t waiting = e.barrier_ns + e.message_ns + e.wait_ns;
+  json["exchange"] = {{"interrupts_sent", a.interrupts_sent},
+                      {"feedbacks_sent", a.feedbacks_sent},
+                      {"tests_ahead", a.tests_ahead},
+                      {"tests_aborted", a.tests_aborted},
+                      {"aborted_seconds", seconds(a.aborted_ns)},
+                      {"barriers", e.barriers},
+                      {"barrier_seconds", seconds(e.barrier_ns)},
+                      {"messages", e.messages},
+                      {"message_bytes", e.message_bytes},
+                      {"message_seconds", seconds(e.message_ns)},
+                      {"wait_seconds", seconds(e.wait_ns)},
+                      {"worker_seconds", seconds(e.worker_ns)},
+                      {"synchronisation_share", per(waiting, static_cast<double>(e.worker_ns))},
+                      {"barrier_share", per(e.barrier_ns, static_cast<double>(e.worker_ns))},
+                      {"messages_per_thousand_rays", per(e.messages, rays * 1e-3)},
+                      {"bytes_per_ray", per(e.message_bytes, rays)}};
+}
+
+}  // namespace
 
 std::string statistics_json(const HostOptions& options, const PreparedScene& prepared,
                             const RunStatistics& statistics) {
-  using Json = nlohmann::ordered_json;
   const auto& header = prepared.image().header;
   const RenderReport& report = statistics.report;
   const DeviceCounters& counters = statistics.counters;
@@ -18,7 +51,8 @@ std::string statistics_json(const HostOptions& options, const PreparedScene& pre
   json["version"] = GRIDRT_VERSION;
   json["scene"] = options.scene;
   json["device"] = statistics.device;
-  json["schedule"] = options.schedule;
+  json["schedule"] =
+      options.schedule.empty() ? default_schedule(statistics.device) : options.schedule;
   json["lattice_bits"] = static_cast<int>(header.bits);
   json["grid"] = {grid.x, grid.y, grid.z};
   json["triangles"] = prepared.scene.triangles.size();
@@ -42,6 +76,7 @@ std::string statistics_json(const HostOptions& options, const PreparedScene& pre
   json["masked"] = counters.masked;
   json["interrupts"] = counters.interrupts;
   json["feedback_waits"] = counters.feedback_waits;
+  add_exchange(json, counters);
   json["cycles"] = nullptr;
   json["cycles_per_ray"] = nullptr;
   if (counters.cycles > 0) {

@@ -7,8 +7,10 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "gridrt_protocol.hpp"
 #include "hal/error.hpp"
 #include "host/grid/segment.hpp"
 #include "host/image/image.hpp"
@@ -30,8 +32,9 @@ enum class Query { kClosestHit, kAnyHit };
 /// How to open a device and talk to it.
 struct DeviceOptions {
   std::string name = "auto";           ///< auto, seq, omp; usb[:SERIAL], sim, mpi when built in
-  std::string schedule = "rays";       ///< of software PEs
-  int threads = 0;                     ///< of omp; 0: all cores
+  std::string schedule;                ///< of software PEs: rays, pes or paper; empty: the
+                                       ///< device's own (omp: rays, mpi: pes)
+  int threads = 0;                     ///< of omp; 0: all cores (paper: one for each PE)
   std::size_t rays_per_frame = 32768;  ///< batch size on the link, >= 1
   int frames_in_flight = 4;            ///< >= 1
   int timeout_ms = 10000;              ///< longest wait for one answer
@@ -39,6 +42,10 @@ struct DeviceOptions {
   /// Software PEs that say, and keep to, less than they could: for tests. The device `seq-board`
   /// is `seq` with board_capabilities().
   std::optional<protocol::CapabilitiesReport> capabilities;
+  bool pes_interrupt = true;           ///< schedule pes: a hit cancels the voxels behind it
+  bool pes_feedback = true;            ///< schedule pes: a hit waits for the voxels before it.
+                                       ///< Both are for measurements; without feedback,
+                                       ///< answers are wrong
 };
 
 /// What a device has done since it was opened.
@@ -48,13 +55,15 @@ struct DeviceCounters {
   std::uint64_t tests = 0;       ///< exact triangle tests
   std::uint64_t masked = 0;      ///< references skipped by the half-voxel mask
   std::uint64_t interrupts = 0;  ///< later voxels cancelled by a hit
-  std::uint64_t feedback_waits = 0;
-  std::uint64_t cycles = 0;  ///< of a clocked device, else 0
+  std::uint64_t feedback_waits = 0;  ///< hits that waited for an earlier voxel's answer
+  std::uint64_t cycles = 0;          ///< of a clocked device, else 0
   std::uint64_t bytes_out = 0;
   std::uint64_t bytes_in = 0;
   std::uint64_t frames_retried = 0;
   std::uint64_t uploads = 0;    ///< images loaded
   double upload_seconds = 0.0;  ///< that took
+  protocol::ExchangeReport exchange;  ///< of software PEs, else 0
+  protocol::AheadReport ahead;        ///< the same
 };
 
 /// An open device. Results depend on the scene alone, never on the device or its options.
@@ -81,6 +90,9 @@ class Device {
 /// Opens a device by name. Errors: kUsage for an unknown name, kUnsupported for one that this
 /// build does not have (the advice lists those it has).
 Result<std::unique_ptr<Device>> open_device(const DeviceOptions& options);
+
+/// The schedule that a software device has when none is asked for.
+std::string_view default_schedule(std::string_view device);
 
 /// Names that open_device accepts in this build; contract tests run on each. Left out: `auto`, and
 /// `seq-board`, which is there for tests.

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <optional>
 #include <thread>
 
 #include <fmt/format.h>
@@ -14,8 +15,9 @@ namespace {
 
 constexpr const char* kBoardInSoftware = "seq-board";
 
-Result<std::unique_ptr<Device>> open_software(const DeviceOptions& options, int threads) {
-  SoftwareDeviceOptions software{.name = options.name, .threads = threads};
+Result<std::unique_ptr<Device>> open_software(const DeviceOptions& options,
+                                              const ScheduleOptions& schedule) {
+  SoftwareDeviceOptions software{.name = options.name, .schedule = schedule};
   if (options.name == kBoardInSoftware) software.capabilities = board_capabilities();
   if (options.capabilities) software.capabilities = *options.capabilities;
   auto transport =
@@ -30,7 +32,37 @@ bool is_planned(const std::string& name) {
   return name == "sim" || name == "mpi" || name == "usb" || name.starts_with("usb:");
 }
 
+/// The schedule of a software device. Threads are for `omp` to choose.
+Result<ScheduleOptions> choose_schedule(const DeviceOptions& options) {
+  ScheduleOptions out;
+  const std::string name(options.schedule.empty() ? default_schedule(options.name)
+                                                  : std::string_view(options.schedule));
+  const std::optional<Schedule> known = schedule_of(name);
+  if (!known) {
+    return fail(ErrorKind::kUsage, fmt::format("schedule '{}' is not known", name),
+                "use rays, pes or paper");
+  }
+  if (options.name == "seq" && *known != Schedule::kRays) {
+    return fail(ErrorKind::kUsage,
+                fmt::format("device 'seq' has one thread and no schedule '{}'", name),
+                "use --device omp or mpi, or leave --schedule out");
+  }
+  out.schedule = *known;
+  out.interrupt = options.pes_interrupt;
+  out.feedback = options.pes_feedback;
+  if (options.name == "omp") {
+    const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+    const bool all = options.threads == 0 && *known != Schedule::kPaper;
+    out.threads = all ? cores : options.threads;
+  }
+  return out;
+}
+
 }  // namespace
+
+std::string_view default_schedule(std::string_view device) {
+  return device == "mpi" ? "pes" : "rays";
+}
 
 std::vector<std::string> built_in_devices() { return {"seq", "omp"}; }
 
@@ -47,23 +79,13 @@ Result<std::unique_ptr<Device>> open_device(const DeviceOptions& options) {
     return fail(ErrorKind::kUsage, fmt::format("device '{}' is not known", chosen.name),
                 fmt::format("use one of: auto, {}", available));
   }
-  if (chosen.schedule != "rays") {
-    const bool planned = chosen.schedule == "pes" || chosen.schedule == "paper";
-    return fail(planned ? ErrorKind::kUnsupported : ErrorKind::kUsage,
-                fmt::format("schedule '{}' {}", chosen.schedule,
-                            planned ? "is not built in yet" : "is not known"),
-                "use --schedule rays");
-  }
   if (chosen.threads < 0) {
     return fail(ErrorKind::kUsage, fmt::format("{} threads asked for", chosen.threads),
                 "use 0 for all cores, or a positive number");
   }
-  int threads = 1;
-  if (chosen.name == "omp") {
-    const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-    threads = chosen.threads == 0 ? cores : chosen.threads;
-  }
-  return open_software(chosen, threads);
+  const Result<ScheduleOptions> schedule = choose_schedule(chosen);
+  if (!schedule) return std::unexpected(schedule.error());
+  return open_software(chosen, *schedule);
 }
 
 }  // namespace gridrt

@@ -212,6 +212,13 @@ Result<DeviceCounters> Session::counters() {
   c.frames_retried = retries_;
   c.uploads = uploads_;
   c.upload_seconds = upload_seconds_;
+  // Devices without workers do not have these.
+  if (const auto more = get_report<protocol::ExchangeReport>(connection_.transport())) {
+    c.exchange = *more;
+  }
+  if (const auto more = get_report<protocol::AheadReport>(connection_.transport())) {
+    c.ahead = *more;
+  }
   return c;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <functional>
+#include <numeric>
 
 #include <fmt/format.h>
 
@@ -104,6 +105,10 @@ Result<std::vector<std::uint8_t>> deal_voxels(const VoxelGrid& grid, const Voxel
                 fmt::format("choose between 1 and {}", kMaxPes));
   }
   std::vector<std::uint8_t> owner(grid.cells(), 0);
+  if (grid.cells() <= static_cast<std::size_t>(pes)) {
+    std::iota(owner.begin(), owner.end(), std::uint8_t{0});
+    return owner;
+  }
   std::vector<VoxelBox> boxes;
   if (mapping != Mapping::kVoxel) {
     split(grid, lists, {glm::ivec3{0}, grid.count},

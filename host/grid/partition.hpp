@@ -11,7 +11,8 @@
 
 namespace gridrt {
 
-/// Rules that deal voxels to PEs; the answer never depends on the choice.
+/// Rules that deal voxels to PEs; the answer never depends on the choice. Where there are no more
+/// voxels than PEs, each voxel has a PE of its own.
 enum class Mapping {
   kBoxes,       ///< balanced k-d boxes (16 a PE, by reference count) dealt in turn: the default
   kContiguous,  ///< one balanced k-d box a PE

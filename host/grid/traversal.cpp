@@ -120,6 +120,7 @@ std::span<const VoxelVisit> SlabMarch::voxels() {
 void SlabMarch::advance(int slabs) {
   slab_ += sign_ * slabs;
   slabs_left_ -= slabs;
+  step_ += slabs;
 }
 
 void SlabMarch::skip_blocks(int blocks) {

@@ -48,6 +48,12 @@ class SlabMarch {
   /// 3; in the plane of a face both sides). Valid until next() or skip().
   std::span<const VoxelVisit> voxels();
 
+  /// Slabs between the first one and this one.
+  [[nodiscard]] int step() const { return step_; }
+
+  /// Goes on (never back) to the slab `step` slabs behind the first one.
+  void seek(int step) { advance(step - step_); }
+
   /// Goes on to the next slab.
   void next() { advance(1); }
 
@@ -73,6 +79,7 @@ class SlabMarch {
   int sign_ = 1;
   int slab_ = 0;
   int slabs_left_ = 0;
+  int step_ = 0;
   std::array<VoxelVisit, 16> visits_;
   std::size_t count_ = 0;
 };

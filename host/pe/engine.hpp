@@ -33,6 +33,11 @@ class Engine {
 
   [[nodiscard]] const TraversalMemory& traversal() const { return traversal_; }
 
+  /// PE `number`, or nullptr if it is absent.
+  [[nodiscard]] const Pe* pe(std::size_t number) const {
+    return pes_[number] ? &*pes_[number] : nullptr;
+  }
+
   /// The smallest key over the triangles of the PEs present. p0 != p1, both within the box.
   [[nodiscard]] PeAnswer closest_hit(const PeRay& ray, PeCounters& counters,
                                      EngineObserver* observer = nullptr) const;

@@ -15,16 +15,6 @@ bool share_halves(HalfMask a, HalfMask b) {
 
 }  // namespace
 
-PeCounters& PeCounters::operator+=(const PeCounters& o) {
-  rays += o.rays;
-  steps += o.steps;
-  tests += o.tests;
-  masked += o.masked;
-  interrupts += o.interrupts;
-  feedback_waits += o.feedback_waits;
-  return *this;
-}
-
 Accepted<Pe> Pe::decode(const protocol::ImageHeader& header, std::uint8_t number,
                         std::span<const std::byte> references, std::span<const std::byte> triangles,
                         std::span<const std::byte> vertices) {

@@ -9,6 +9,7 @@
 #include "host/grid/intersect.hpp"
 #include "host/grid/intersect_narrow.hpp"
 #include "host/grid/voxel_grid.hpp"
+#include "host/pe/counters.hpp"
 #include "host/pe/refusal.hpp"
 
 namespace gridrt {
@@ -18,18 +19,6 @@ struct PeRay {
   glm::ivec3 p0{0};
   glm::ivec3 p1{0};
   std::uint32_t ignore = kNoTriangle;  ///< local id that is never hit
-};
-
-/// What PEs and traversal count.
-struct PeCounters {
-  std::uint64_t rays = 0;
-  std::uint64_t steps = 0;
-  std::uint64_t tests = 0;
-  std::uint64_t masked = 0;
-  std::uint64_t interrupts = 0;
-  std::uint64_t feedback_waits = 0;
-
-  PeCounters& operator+=(const PeCounters& o);
 };
 
 /// Told of each reference that a PE looks at (for --explain); `hit` is empty on a miss.

@@ -1,17 +1,7 @@
 #include "host/pe/ray_batch.hpp"
 
-#include <algorithm>
-
-#include <omp.h>
-
 namespace gridrt {
 namespace {
-
-/// A ray as it came, in either layout.
-struct BatchRay {
-  PeRay ray;
-  bool any_hit = false;
-};
 
 struct Compact {
   static constexpr std::size_t kRayBytes = protocol::RayCompact::kBytes;
@@ -51,62 +41,48 @@ bool decode_ray(const protocol::ImageHeader& header,
 }
 
 template <class LayoutTag>
-typename LayoutTag::HitRecord answer(const Engine& engine, const BatchRay& r,
-                                     PeCounters& counters) {
-  typename LayoutTag::HitRecord hit;
-  hit.id = LayoutTag::kNone;
-  if (r.ray.p0 == r.ray.p1) {
-    ++counters.rays;
-  } else if (r.any_hit) {
-    hit.hit = engine.any_hit(r.ray, counters);
-    if (hit.hit) hit.id = 0;
-  } else if (const PeAnswer best = engine.closest_hit(r.ray, counters)) {
-    hit.hit = true;
-    hit.id = best->id;
-  }
-  return hit;
-}
-
-template <class LayoutTag>
-Accepted<void> trace_layout(const CommittedImage& image, std::span<const std::byte> records,
-                            std::span<std::byte> hits, int threads, PeCounters& counters) {
-  const std::size_t count = records.size() / LayoutTag::kRayBytes;
-  std::vector<BatchRay> rays(count);
-  for (std::size_t i = 0; i < count; ++i) {
+Accepted<std::vector<BatchRay>> unpack_layout(const protocol::ImageHeader& header,
+                                              std::span<const std::byte> records) {
+  std::vector<BatchRay> rays(records.size() / LayoutTag::kRayBytes);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
     const auto bytes =
         records.subspan(i * LayoutTag::kRayBytes).template first<LayoutTag::kRayBytes>();
-    if (!decode_ray<LayoutTag>(image.header, bytes, rays[i])) {
+    if (!decode_ray<LayoutTag>(header, bytes, rays[i])) {
       return refuse(protocol::ErrorCode::kBadRay, static_cast<std::uint32_t>(i));
     }
   }
-  constexpr std::size_t kPiece = 64;  // rays that a thread takes at a time
-  const auto pieces = static_cast<std::ptrdiff_t>((count + kPiece - 1) / kPiece);
-#pragma omp parallel num_threads(threads) if (threads > 1)
-  {
-    PeCounters mine;
-#pragma omp for schedule(dynamic)
-    for (std::ptrdiff_t piece = 0; piece < pieces; ++piece) {
-      const std::size_t first = static_cast<std::size_t>(piece) * kPiece;
-      for (std::size_t i = first; i < std::min(count, first + kPiece); ++i) {
-        protocol::pack(
-            answer<LayoutTag>(image.engine, rays[i], mine),
-            hits.subspan(i * LayoutTag::kHitBytes).template first<LayoutTag::kHitBytes>());
-      }
-    }
-#pragma omp critical
-    counters += mine;
-  }
-  return {};
+  return rays;
 }
+
+template <class LayoutTag>
+void pack_layout(const BatchRay& ray, const PeAnswer& answer, std::size_t index,
+                 std::span<std::byte> hits) {
+  typename LayoutTag::HitRecord hit;
+  hit.id = LayoutTag::kNone;
+  hit.hit = answer.has_value();
+  if (answer) hit.id = ray.any_hit ? 0 : answer->id;
+  protocol::pack(hit,
+                 hits.subspan(index * LayoutTag::kHitBytes).template first<LayoutTag::kHitBytes>());
+}
+
+bool is_compact(protocol::Layout layout) { return layout == protocol::Layout::kCompact; }
 
 }  // namespace
 
-Accepted<void> trace_batch(const CommittedImage& image, std::span<const std::byte> records,
-                           std::span<std::byte> hits, int threads, PeCounters& counters) {
-  if (static_cast<protocol::Layout>(image.header.layout) == protocol::Layout::kCompact) {
-    return trace_layout<Compact>(image, records, hits, threads, counters);
+Accepted<std::vector<BatchRay>> unpack_rays(const protocol::ImageHeader& header,
+                                            std::span<const std::byte> records) {
+  return is_compact(static_cast<protocol::Layout>(header.layout))
+             ? unpack_layout<Compact>(header, records)
+             : unpack_layout<Wide>(header, records);
+}
+
+void pack_answer(protocol::Layout layout, const BatchRay& ray, const PeAnswer& answer,
+                 std::size_t index, std::span<std::byte> hits) {
+  if (is_compact(layout)) {
+    pack_layout<Compact>(ray, answer, index, hits);
+  } else {
+    pack_layout<Wide>(ray, answer, index, hits);
   }
-  return trace_layout<Wide>(image, records, hits, threads, counters);
 }
 
 }  // namespace gridrt

@@ -1,18 +1,29 @@
-// The rays of one Trace frame: unpacked, traced on worker threads, packed as hits.
+// The rays of one Trace frame, unpacked, and their answers, packed as hits.
 #pragma once
 
 #include <span>
 #include <vector>
 
 #include "gridrt_protocol.hpp"
+#include "host/pe/engine.hpp"
 #include "host/pe/image_store.hpp"
 
 namespace gridrt {
 
-/// Traces `records` (whole ray records in the image's layout) on `threads` threads and writes a
-/// hit record for each to `hits`. Refuses a ray with a coordinate outside the box (detail: its
-/// index) before any is traced.
-Accepted<void> trace_batch(const CommittedImage& image, std::span<const std::byte> records,
-                           std::span<std::byte> hits, int threads, PeCounters& counters);
+/// A ray as it came, in either layout.
+struct BatchRay {
+  PeRay ray;
+  bool any_hit = false;
+};
+
+/// Unpacks whole ray records in the image's layout. Refuses a ray with a coordinate outside the
+/// box (detail: its index).
+Accepted<std::vector<BatchRay>> unpack_rays(const protocol::ImageHeader& header,
+                                            std::span<const std::byte> records);
+
+/// Writes the hit record of ray `index` of a batch. An any-hit ray that hits has id 0, whatever
+/// the answer's id.
+void pack_answer(protocol::Layout layout, const BatchRay& ray, const PeAnswer& answer,
+                 std::size_t index, std::span<std::byte> hits);
 
 }  // namespace gridrt

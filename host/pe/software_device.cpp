@@ -9,6 +9,9 @@
 
 #include "hal/record_sizes.hpp"
 #include "host/pe/ray_batch.hpp"
+#include "host/pe/schedule_paper.hpp"
+#include "host/pe/schedule_pes.hpp"
+#include "host/pe/schedule_rays.hpp"
 
 namespace gridrt {
 namespace {
@@ -121,9 +124,22 @@ Accepted<void> SoftwareDevice::trace(const Frame& frame, FrameBuilder& reply) {
   if (head.count == 0 || records.size() != head.count * ray_record_bytes(frame.layout())) {
     return refuse(ErrorCode::kBadLength, frame.header.length);
   }
+  const Accepted<std::vector<BatchRay>> rays = unpack_rays(image_->header, records);
+  if (!rays) return std::unexpected(rays.error());
   reply.append(frame.payload.first(kHead));
   const std::span<std::byte> hits = reply.extend(head.count * hit_record_bytes(frame.layout()));
-  return trace_batch(*image_, records, hits, options_.threads, counters_);
+  switch (options_.schedule.schedule) {
+    case Schedule::kRays:
+      trace_rays(*image_, *rays, hits, options_.schedule.threads, counters_);
+      break;
+    case Schedule::kPes:
+      trace_pes(*image_, *rays, hits, options_.schedule, counters_);
+      break;
+    case Schedule::kPaper:
+      trace_paper(*image_, *rays, hits, options_.schedule, counters_);
+      break;
+  }
+  return {};
 }
 
 Result<void> SoftwareDevice::answer_error(std::uint32_t sequence, const Refusal& refusal) {
@@ -186,6 +202,28 @@ Result<void> SoftwareDevice::get_feature(std::uint8_t id, std::span<std::byte> b
       report.masked = counters_.masked;
       report.interrupts = counters_.interrupts;
       report.feedback_waits = counters_.feedback_waits;
+      put_report(report, body);
+      return {};
+    }
+    case protocol::ExchangeReport::kId: {
+      protocol::ExchangeReport report;
+      report.barriers = counters_.barriers;
+      report.barrier_ns = counters_.barrier_ns;
+      report.messages = counters_.messages;
+      report.message_bytes = counters_.message_bytes;
+      report.message_ns = counters_.message_ns;
+      report.wait_ns = counters_.wait_ns;
+      report.worker_ns = counters_.worker_ns;
+      put_report(report, body);
+      return {};
+    }
+    case protocol::AheadReport::kId: {
+      protocol::AheadReport report;
+      report.tests_ahead = counters_.tests_ahead;
+      report.tests_aborted = counters_.tests_aborted;
+      report.aborted_ns = counters_.aborted_ns;
+      report.interrupts_sent = counters_.interrupts_sent;
+      report.feedbacks_sent = counters_.feedbacks_sent;
       put_report(report, body);
       return {};
     }

@@ -10,12 +10,13 @@
 #include "hal/endpoint.hpp"
 #include "hal/frame.hpp"
 #include "host/pe/image_store.hpp"
+#include "host/pe/schedule.hpp"
 
 namespace gridrt {
 
 struct SoftwareDeviceOptions {
   std::string name = "seq";  ///< told in the Identity report, at most 32 characters
-  int threads = 1;           ///< worker threads, >= 1; 1 uses the caller's
+  ScheduleOptions schedule;
   /// What it tells about itself, and what it refuses to go beyond.
   protocol::CapabilitiesReport capabilities = software_capabilities();
 };

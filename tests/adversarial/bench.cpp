@@ -83,6 +83,7 @@ Configuration random_configuration(Random& random, int bits) {
   s.device.name = random.chance(0.6) ? "seq" : random.chance(0.7) ? "omp" : "seq-board";
   if (!asked.empty()) s.device.name = asked[random.below(asked.size())];
   s.device.threads = random.between(1, 3);
+  if (s.device.name == "omp" && s.device.threads != 2) s.device.schedule = "pes";
   s.device.rays_per_frame = kBatches[1 + random.below(4)];
   if (random.chance(0.02)) s.device.rays_per_frame = 1;
   s.device.frames_in_flight = random.between(1, 6);
@@ -105,10 +106,11 @@ Configuration random_configuration(Random& random, int bits) {
 std::string describe(const Configuration& s) {
   const glm::ivec3 g = s.image.grid.value_or(glm::ivec3{0});
   return fmt::format(
-      "device {} ({} threads, {} rays a frame, {} in flight), {} bits, grid {}x{}x{}, {} PEs, "
+      "device {} {} ({} threads, {} rays a frame, {} in flight), {} bits, grid {}x{}x{}, {} PEs, "
       "mapping {}, {}",
-      s.device.name, s.device.threads, s.device.rays_per_frame, s.device.frames_in_flight,
-      s.image.bits, g.x, g.y, g.z, s.image.pes, mapping_name(s.image.mapping),
+      s.device.name, s.device.schedule, s.device.threads, s.device.rays_per_frame,
+      s.device.frames_in_flight, s.image.bits, g.x, g.y, g.z, s.image.pes,
+      mapping_name(s.image.mapping),
       s.image.layout == protocol::Layout::kCompact ? "compact" : "wide");
 }
 

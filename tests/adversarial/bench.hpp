@@ -21,7 +21,7 @@ struct Configuration {
 };
 
 /// seq, omp or seq-board, or one of those that GRIDRT_DEVICES names; 1, 2, 4 or 8 PEs; any mapping,
-/// grid, batch size, thread count and layout.
+/// grid, batch size, thread count and layout; omp in the schedules rays and pes.
 Configuration random_configuration(Random& random, int bits);
 
 /// One line that tells a configuration.

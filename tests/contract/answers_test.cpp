@@ -13,11 +13,11 @@ namespace {
 
 using protocol::Layout;
 
-INSTANTIATE_TEST_SUITE_P(Devices, Contract, testing::ValuesIn(adversarial::devices_under_test()),
+INSTANTIATE_TEST_SUITE_P(Devices, Contract, testing::ValuesIn(contract_devices()),
                          [](const auto& device) {
                            std::string name = device.param;  // gtest takes letters, digits and _
                            std::ranges::replace_if(
-                               name, [](char c) { return c == '-' || c == ':'; }, '_');
+                               name, [](char c) { return c == '-' || c == ':' || c == '+'; }, '_');
                            return name;
                          });
 

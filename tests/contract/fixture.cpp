@@ -73,14 +73,26 @@ std::vector<Hit> reference(const Scene& scene, int bits, std::span<const Segment
   return trace(**device, segments, query);
 }
 
+std::vector<std::string> contract_devices() {
+  std::vector<std::string> names = adversarial::devices_under_test();
+  for (const std::string& name : adversarial::devices_under_test()) {
+    if (name == "omp") names.insert(names.end(), {"omp+pes", "omp+paper"});
+    if (name == "mpi") names.emplace_back("mpi+paper");
+  }
+  return names;
+}
+
 std::unique_ptr<Device> Contract::open(DeviceOptions options) {
-  options.name = GetParam();
+  const std::string& name = GetParam();
+  const std::size_t cut = name.find('+');
+  options.name = name.substr(0, cut);
+  if (cut != std::string::npos) options.schedule = name.substr(cut + 1);
   auto device = open_device(options);
   if (!device) {
     ADD_FAILURE() << device.error().message;
     return nullptr;
   }
-  EXPECT_EQ((*device)->name(), GetParam());
+  EXPECT_EQ((*device)->name(), options.name);
   return std::move(*device);
 }
 

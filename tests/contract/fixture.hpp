@@ -31,6 +31,10 @@ std::vector<Hit> trace(Device& device, std::span<const Segment> segments, Query 
 std::vector<Hit> reference(const Scene& scene, int bits, std::span<const Segment> segments,
                            Query query);
 
+/// The devices under test (adversarial/devices.hpp), and each schedule that one has besides its
+/// default: NAME or NAME+SCHEDULE.
+std::vector<std::string> contract_devices();
+
 /// A test of one device.
 class Contract : public testing::TestWithParam<std::string> {
  protected:

@@ -30,7 +30,7 @@ class Usage(ProgramTest):
 
     def test_what_is_not_built_in_is_5(self):
         for words in (["--device", "sim"], ["--device", "usb"], ["--device", "usb:0001"],
-                      ["--device", "mpi"], ["--schedule", "pes"], ["--schedule", "paper"], ["--exact"]):
+                      ["--device", "mpi"], ["--exact"]):
             with self.subTest(words=words):
                 done = self.host("builtin:teapot", "-o", "a.png", *words, code=5)
                 self.assertIn("not built in yet", done.stderr)
