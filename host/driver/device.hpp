@@ -42,10 +42,10 @@ struct DeviceOptions {
   /// Software PEs that say, and keep to, less than they could: for tests. The device `seq-board`
   /// is `seq` with board_capabilities().
   std::optional<protocol::CapabilitiesReport> capabilities;
-  bool pes_interrupt = true;           ///< schedule pes: a hit cancels the voxels behind it
-  bool pes_feedback = true;            ///< schedule pes: a hit waits for the voxels before it.
-                                       ///< Both are for measurements; without feedback,
-                                       ///< answers are wrong
+  bool pes_interrupt = true;  ///< schedule pes: a hit cancels the voxels behind it
+  bool pes_feedback = true;   ///< schedule pes: a hit waits for the voxels before it.
+                              ///< Both are for measurements; without feedback,
+                              ///< answers are wrong
 };
 
 /// What a device has done since it was opened.
@@ -60,8 +60,8 @@ struct DeviceCounters {
   std::uint64_t bytes_out = 0;
   std::uint64_t bytes_in = 0;
   std::uint64_t frames_retried = 0;
-  std::uint64_t uploads = 0;    ///< images loaded
-  double upload_seconds = 0.0;  ///< that took
+  std::uint64_t uploads = 0;          ///< images loaded
+  double upload_seconds = 0.0;        ///< that took
   protocol::ExchangeReport exchange;  ///< of software PEs, else 0
   protocol::AheadReport ahead;        ///< the same
 };
