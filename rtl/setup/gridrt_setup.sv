@@ -44,9 +44,6 @@ module gridrt_setup #(
   localparam int unsigned HALF_W = AXIS_W + 1;  // half-voxels, 0 .. 1024
   localparam int unsigned PRODUCT_W = EDGE_W + MAX_B;
   localparam int unsigned SLOPE_W = REST_W + 1;
-  // The partial half-slab needs fewer bits behind the point: its error does not grow.
-  localparam int unsigned PARTIAL_BITS = 3;
-  localparam int unsigned PARTIAL_W = EDGE_W + PARTIAL_BITS - 1;
   localparam int unsigned LATENCY = 29;
   localparam int unsigned RAY_W = 6 * B + ID_W + 1;
 
@@ -222,66 +219,24 @@ module gridrt_setup #(
     end
   end
 
-  // Increments per half-slab: 10-24. For the partial one: 11 product, 12-21 division.
+  // 10-24: increments per half-slab and for the partial one.
   logic [1:0] s24_moving;  // P0 and P1 differ
-  logic [1:0][SLOPE_W-1:0] s24_slope;
-  logic [1:0][PARTIAL_W-1:0] s24_partial;
+  logic [1:0][SLOPE_W-1:0] s24_slope, s24_partial;
   for (genvar n = 0; n < 2; n++) begin : gen_increment
-    logic [PRODUCT_W-1:0] s11_product;
-    logic [MAX_B-1:0] s11_length;
-    logic [PARTIAL_W-1:0] s21_partial;
-    logic unused_partial;
-    logic [MAX_B-1:0] rest_slope, rest_partial;
-    gridrt_divide_pipe #(
-        .DIVIDEND_W(PRODUCT_W + UNIT_SHIFT),
-        .DIVISOR_W(MAX_B),
-        .QUOTIENT_W(SLOPE_W),
-        .STEP(2)
-    ) i_slope (
+    gridrt_setup_increment i_increment (
         .clk_i,
         .rst_ni,
         .enable_i(enable),
-        .valid_i(valid[9] && s9_length != '0),
-        .dividend_i({s9_product[n], UNIT_SHIFT'(0)}),
-        .divisor_i(s9_length),
-        .valid_o(s24_moving[n]),
-        .quotient_o(s24_slope[n]),
-        .remainder_o(rest_slope)
+        .valid_i(valid[11:9]),
+        .s9_product_i(s9_product[n]),
+        .s9_length_i(s9_length),
+        .s10_ahead_i(s10_ahead),
+        .s10_lateral_i(s10_lateral[n]),
+        .s10_length_i(s10_length),
+        .s24_moving_o(s24_moving[n]),
+        .s24_slope_o(s24_slope[n]),
+        .s24_partial_o(s24_partial[n])
     );
-    always_ff @(posedge clk_i) begin
-      if (enable && valid[10]) begin
-        s11_product <= s10_ahead * s10_lateral[n];
-        s11_length <= s10_length;
-      end
-    end
-    gridrt_divide_pipe #(
-        .DIVIDEND_W(PRODUCT_W + PARTIAL_BITS - 1),
-        .DIVISOR_W(MAX_B),
-        .QUOTIENT_W(PARTIAL_W),
-        .STEP(2)
-    ) i_partial (
-        .clk_i,
-        .rst_ni,
-        .enable_i(enable),
-        .valid_i(valid[11] && s11_length != '0),
-        .dividend_i({s11_product, (PARTIAL_BITS - 1)'(0)}),
-        .divisor_i(s11_length),
-        .valid_o(unused_partial),
-        .quotient_o(s21_partial),
-        .remainder_o(rest_partial)
-    );
-    gridrt_delay #(
-        .WIDTH(PARTIAL_W),
-        .CLOCKS(3)
-    ) i_wait (
-        .clk_i,
-        .rst_ni,
-        .enable_i(enable),
-        .data_i(s21_partial),
-        .data_o(s24_partial[n])
-    );
-    logic unused;
-    assign unused = &{1'b0, unused_partial, rest_slope, rest_partial};
   end
 
   // What the last part needs, from clock 10 to 24.
@@ -319,10 +274,7 @@ module gridrt_setup #(
       .s24_low_i(s24_low),
       .s24_rest_i(s24_rest),
       .s24_slope_i(s24_slope),
-      .s24_partial_i({
-        {s24_partial[1], (gridrt_pkg::FRACTION - PARTIAL_BITS)'(0)},
-        {s24_partial[0], (gridrt_pkg::FRACTION - PARTIAL_BITS)'(0)}
-      }),
+      .s24_partial_i(s24_partial),
       .s29_half_o(s29_half),
       .s29_rest_o(s29_rest),
       .s29_slope_o(s29_slope),

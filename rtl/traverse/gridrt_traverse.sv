@@ -52,14 +52,10 @@ module gridrt_traverse #(
   localparam int unsigned BLOCK_W = gridrt_pkg::BLOCK_W;
   localparam int unsigned DIST_W = gridrt_pkg::DIST_W;
   localparam int unsigned CELL_W = gridrt_pkg::CELL_W;
-  localparam int unsigned AXIS_W = gridrt_pkg::AXIS_W;
   localparam int unsigned EDGE_W = gridrt_state_pkg::EDGE_W;
   localparam int unsigned REST_W = gridrt_state_pkg::REST_W;
-  localparam int unsigned SLABS_W = gridrt_state_pkg::SLABS_W;
   localparam int unsigned STATE_W = 192;  // of start_t
-  localparam int unsigned BUNDLE_W = 127;  // of bundle_t
   localparam int unsigned INDEX_W = (COUNT > 1) ? $clog2(COUNT) : 1;
-  localparam int unsigned CREDIT_W = $clog2(QUEUE + 1);
 
   if (TUS < 1 || TUS > 4 || INDEX >= TUS || SLOTS % TUS != 0 || SLOTS < TUS ||
       SLOTS > (1 << SLOT_W)) begin : gen_illegal
@@ -85,11 +81,8 @@ module gridrt_traverse #(
   logic [8:1] valid;
   logic may_issue, start, grant, again;
   logic [INDEX_W-1:0] grant_slot, s1_slot, s2_slot, s3_slot, s4_slot, s5_slot, s6_slot, s7_slot, s8_slot;
-  logic [CREDIT_W-1:0] credits;
-  logic push, pop;
   gridrt_state_pkg::start_t s1_start;
   logic s1_starts;
-  assign may_issue = credits != '0;
   assign start_ready_o = may_issue;
   assign start = start_valid_i && start_ready_o;
   gridrt_schedule #(
@@ -107,13 +100,8 @@ module gridrt_traverse #(
   );
   logic s8_writes;
   always_ff @(posedge clk_i or negedge rst_ni) begin
-    if (!rst_ni) begin
-      valid   <= '0;
-      credits <= CREDIT_W'(QUEUE);
-    end else begin
-      valid   <= {valid[7:1], start || grant};
-      credits <= credits - CREDIT_W'(start || grant) + CREDIT_W'(valid[7] && !push) + CREDIT_W'(pop);
-    end
+    if (!rst_ni) valid <= '0;
+    else valid <= {valid[7:1], start || grant};
   end
   always_ff @(posedge clk_i) begin
     s1_starts <= start;
@@ -190,20 +178,22 @@ module gridrt_traverse #(
   end
 
   // 3: the block's record, and how many block-slabs are left behind if its slab is done with.
-  logic s3_occupied, s4_occupied, s5_occupied, s6_occupied;
-  logic [20:0] s3_record, s4_record, s5_record, s6_record, s7_record;
-  logic [2:0] s3_jump, s4_jump, s5_jump, s6_jump;
-  logic [2:0] s3_ahead, s4_ahead, s5_ahead;
-  assign s3_occupied = block_data_i[21];
-  assign s3_record = block_data_i[20:0];
-  always_comb begin
-    s3_jump = 3'd0;
-    for (int unsigned a = 0; a < 3; a++) begin
-      if (s3_state.axis == 2'(a)) s3_jump = s3_state.neg[a] ? s3_record[6*a+3+:3] : s3_record[6*a+:3];
-    end
-    if (s3_occupied || s3_sub != 2'd0) s3_jump = 3'd0;
-    s3_ahead = (s3_jump != 3'd0) ? s3_jump : 3'd1;
-  end
+  logic s7_occupied;
+  logic [20:0] s7_record;
+  logic [2:0] s3_ahead, s6_jump, s7_jump;
+  gridrt_march_record i_record (
+      .clk_i,
+      .valid_i(valid[6:3]),
+      .s3_data_i(block_data_i),
+      .s3_axis_i(s3_state.axis),
+      .s3_neg_i(s3_state.neg),
+      .s3_aside_i(s3_sub != 2'd0),
+      .s3_ahead_o(s3_ahead),
+      .s6_jump_o(s6_jump),
+      .s7_jump_o(s7_jump),
+      .s7_occupied_o(s7_occupied),
+      .s7_record_o(s7_record)
+  );
 
   logic [1:0][4:0][2:0] s5_sample;
   logic [1:0][REST_W-1:0] s7_rest;
@@ -227,65 +217,31 @@ module gridrt_traverse #(
   end
 
   // 3-6: distances, and whether there are as many block-slabs.
-  logic [EDGE_W-1:0] s3_edge, s4_edge, s5_edge;
-  logic [EDGE_W+1:0] s3_edge3, s4_edge3, few_edges;
-  logic [EDGE_W+2:0] s5_way;  // `ahead` edges
-  logic [DIST_W:0] s5_far, s6_enter;
-  logic [DIST_W-1:0] s6_near_enter, s6_far_enter, s7_near_enter, s7_far_enter;
-  logic s6_over, s7_over;
-  always_comb begin
-    case (s4_ahead[1:0])
-      2'd0: few_edges = '0;
-      2'd1: few_edges = {2'b00, s4_edge};
-      2'd2: few_edges = {1'b0, s4_edge, 1'b0};
-      default: few_edges = s4_edge3;
-    endcase
-    s5_far = s5_state.enter + {1'b0, s5_edge};
-  end
-  always_ff @(posedge clk_i) begin
-    if (valid[2]) begin
-      s3_edge  <= s2_edge[0];
-      s3_edge3 <= s2_edge3[0];
-    end
-    if (valid[3]) begin
-      s4_edge <= s3_edge;
-      s4_edge3 <= s3_edge3;
-      s4_ahead <= s3_ahead;
-      s4_jump <= s3_jump;
-      s4_occupied <= s3_occupied;
-      s4_record <= s3_record;
-    end
-    if (valid[4]) begin
-      s5_edge <= s4_edge;
-      s5_ahead <= s4_ahead;
-      s5_jump <= s4_jump;
-      s5_occupied <= s4_occupied;
-      s5_record <= s4_record;
-      s5_way <= {1'b0, few_edges} + (s4_ahead[2] ? {1'b0, s4_edge, 2'b00} : '0);
-    end
-    if (valid[5]) begin
-      s6_jump <= s5_jump;
-      s6_occupied <= s5_occupied;
-      s6_record <= s5_record;
-      // A carry out of it belongs to a slab behind the last one.
-      s6_enter <= s5_state.enter + {s5_way[DIST_W-1:0], 1'b0};
-      s6_over <= SLABS_W'(s5_ahead) > s5_state.slabs;
-      s6_near_enter <= s5_state.enter[DIST_W] ? '0 : s5_state.enter[DIST_W-1:0];
-      s6_far_enter <= s5_far[DIST_W] ? '0 : s5_far[DIST_W-1:0];
-    end
-    if (valid[6]) begin
-      s7_near_enter <= s6_near_enter;
-      s7_far_enter <= s6_far_enter;
-      s7_over <= s6_over;
-      s7_record <= s6_record;
-    end
-  end
+  logic [2:0] s5_ahead;
+  logic [DIST_W:0] s6_enter;
+  logic [DIST_W-1:0] s6_near_enter, s7_near_enter, s7_far_enter;
+  logic s7_over;
+  gridrt_march_way i_way (
+      .clk_i,
+      .valid_i(valid[6:2]),
+      .s2_edge_i(s2_edge[0]),
+      .s2_edge3_i(s2_edge3[0]),
+      .s3_ahead_i(s3_ahead),
+      .s5_enter_i(s5_state.enter),
+      .s5_slabs_i(s5_state.slabs),
+      .s5_ahead_o(s5_ahead),
+      .s6_enter_o(s6_enter),
+      .s6_near_enter_o(s6_near_enter),
+      .s7_near_enter_o(s7_near_enter),
+      .s7_far_enter_o(s7_far_enter),
+      .s7_over_o(s7_over)
+  );
 
   // 5-6: voxels met, and the next neighbour to be looked at.
   logic [3:1] s6_touched;
   logic [7:0] s7_met;
   logic [7:0][5:0] s7_mask;
-  logic s6_on, s7_on, s7_occupied;  // on: to another block-slab
+  logic s6_on, s7_on;  // on: to another block-slab
   gridrt_block_voxels i_voxels (
       .clk_i,
       .valid_i(valid[6:5]),
@@ -313,7 +269,6 @@ module gridrt_traverse #(
   logic [DIST_W-1:0] s6_limit;
   logic s7_killed, s7_ends, mine;
   logic [DIST_W:0] s7_enter;
-  logic [2:0] s7_jump;
   assign mine = interrupt_i.valid && CANCEL && slot_of(place(interrupt_i.slot)) == interrupt_i.slot;
   gridrt_lutram #(
       .WIDTH(DIST_W),
@@ -338,152 +293,75 @@ module gridrt_traverse #(
   end
   always_ff @(posedge clk_i) begin
     if (valid[6]) begin
-      s7_occupied <= s6_occupied;
       s7_on <= s6_on;
       s7_next_sub <= s6_next_sub;
       s7_killed <= limited[s6_slot] && s6_near_enter > s6_limit;
       s7_ends <= limited[s6_slot] && (s6_enter[DIST_W] ? 1'b0 : s6_enter[DIST_W-1:0] > s6_limit);
       s7_enter <= s6_enter;
-      s7_jump <= s6_jump;
     end
   end
 
   // 7: out with the voxels.
-  logic [7:0] cand, front;
-  logic done;
-  gridrt_pkg::bundle_t bundle;
-  always_comb begin
-    cand = (s7_occupied && !s7_killed) ? s7_met & s7_record[7:0] : '0;
-    case (s7_state.axis)
-      2'd0: front = 8'h55;
-      2'd1: front = 8'h33;
-      default: front = 8'h0F;
-    endcase
-    for (int unsigned a = 0; a < 3; a++) begin
-      if (s7_state.axis == 2'(a) && s7_state.neg[a]) front = ~front;
-    end
-    done = s7_killed || (s7_on && (s7_over || s7_ends));
-    inc_count_o = '0;
-    for (int unsigned v = 0; v < 8; v++) inc_count_o = inc_count_o + 4'(cand[v]);
-    bundle.slot = slot_of(s7_slot);
-    bundle.base = s7_record[8+:CELL_W];
-    bundle.occ = s7_record[7:0];
-    bundle.cand = cand;
-    bundle.front = front;
-    bundle.halves = s7_mask;
-    bundle.near_enter = s7_near_enter;
-    bundle.far_enter = s7_far_enter;
-  end
-  assign push = valid[7] && cand != '0;
-  assign pop = bundle_valid_o && bundle_ready_i;
+  logic [7:0] cand;
+  logic push, done;
+  assign done = s7_killed || (s7_on && (s7_over || s7_ends));
+  gridrt_march_out #(
+      .QUEUE(QUEUE)
+  ) i_out (
+      .clk_i,
+      .rst_ni,
+      .issue_i(start || grant),
+      .may_issue_o(may_issue),
+      .s7_valid_i(valid[7]),
+      .s7_open_i(s7_occupied && !s7_killed),
+      .s7_slot_i(slot_of(s7_slot)),
+      .s7_axis_i(s7_state.axis),
+      .s7_neg_i(s7_state.neg),
+      .s7_base_i(s7_record[8+:CELL_W]),
+      .s7_occ_i(s7_record[7:0]),
+      .s7_met_i(s7_met),
+      .s7_halves_i(s7_mask),
+      .s7_near_enter_i(s7_near_enter),
+      .s7_far_enter_i(s7_far_enter),
+      .s7_cand_o(cand),
+      .s7_push_o(push),
+      .s7_count_o(inc_count_o),
+      .bundle_valid_o,
+      .bundle_ready_i,
+      .bundle_o
+  );
   assign again = valid[7] && !done;
   assign inc_valid_o = push;
   assign inc_slot_o = slot_of(s7_slot);
   assign done_valid_o = valid[7] && done;
   assign done_slot_o = slot_of(s7_slot);
   assign step_o = valid[7];
-  logic queue_ready;
-  logic [CREDIT_W-1:0] queue_count;
-  gridrt_fifo #(
-      .WIDTH(BUNDLE_W),
-      .DEPTH(QUEUE)
-  ) i_queue (
-      .clk_i,
-      .rst_ni,
-      .in_valid_i(push),
-      .in_ready_o(queue_ready),
-      .in_data_i(bundle),
-      .out_valid_o(bundle_valid_o),
-      .out_ready_i(bundle_ready_i),
-      .out_data_o(bundle_o),
-      .count_o(queue_count)
-  );
 
-  // 4-8: the next block. Strides are negative on mirrored axes.
-  logic [2:0][BLOCK_W-1:0] s4_stride, s5_stride, s5_stride3, s6_stride, s6_stride3, s7_stride,
-                           s7_stride3;
-  logic [BLOCK_W-1:0] s6_main, s7_main, s8_main;
-  logic [1:0][BLOCK_W-1:0] s7_side, s8_side;
-  logic [1:0][2:0] s7_off, s8_off;  // blocks passed sideways
-  logic [1:0][4:0] s7_half, s8_half;
-  function automatic logic [BLOCK_W-1:0] times(logic [2:0] factor, logic [BLOCK_W-1:0] stride,
-                                               logic [BLOCK_W-1:0] stride3);
-    case (factor[1:0])
-      2'd0: times = '0;
-      2'd1: times = stride;
-      2'd2: times = stride << 1;
-      default: times = stride3;
-    endcase
-    if (factor[2]) times = times + (stride << 2);
-  endfunction
-  always_comb begin
-    for (int unsigned n = 0; n < 2; n++) begin
-      s7_half[n] = {{2{s7_state.half[n][2]}}, s7_state.half[n]} + s7_halves_on[n];
-      s7_off[n] = s7_half[n][4:2];
-      if (s7_on) s7_side[n] = times(s7_off[n], s7_stride[n+1], s7_stride3[n+1]);
-      else s7_side[n] = s7_next_sub[n] ? s7_stride[n+1] : '0;
-    end
-  end
-  logic s8_on, s8_going;
-  logic [1:0][REST_W-1:0] s8_rest;
-  logic [SLABS_W-1:0] s6_slabs, s7_slabs, s8_slabs;
-  logic [DIST_W:0] s8_enter;
+  // 4-8: the next block.
+  logic s8_going;
+  gridrt_march_next i_next (
+      .clk_i,
+      .valid_i(valid[7:3]),
+      .stride_i(grid_i.stride),
+      .s3_axis_i(s3_state.axis),
+      .s3_neg_i(s3_state.neg),
+      .s5_ahead_i(s5_ahead),
+      .s5_slabs_i(s5_state.slabs),
+      .s7_on_i(s7_on),
+      .s7_sub_i(s7_next_sub),
+      .s7_half_i(s7_state.half),
+      .s7_halves_i(s7_halves_on),
+      .s7_rest_i(s7_rest),
+      .s7_enter_i(s7_enter),
+      .s8_state_i(s8_state),
+      .s8_next_o(s8_next),
+      .s8_sub_o(s8_sub),
+      .s8_look_o(s8_look)
+  );
   always_ff @(posedge clk_i) begin
-    if (valid[3]) begin
-      for (int unsigned a = 0; a < 3; a++) begin
-        for (int unsigned k = 0; k < 3; k++) begin
-          if (s3_state.axis == 2'(a)) begin
-            s4_stride[k] <= s3_state.neg[(a+k)%3] ? -grid_i.stride[(a+k)%3] : grid_i.stride[(a+k)%3];
-          end
-        end
-      end
-    end
-    if (valid[4]) begin
-      s5_stride <= s4_stride;
-      for (int unsigned k = 0; k < 3; k++) s5_stride3[k] <= s4_stride[k] + (s4_stride[k] << 1);
-    end
-    if (valid[5]) begin
-      s6_stride <= s5_stride;
-      s6_stride3 <= s5_stride3;
-      s6_main <= times(s5_ahead, s5_stride[0], s5_stride3[0]);
-      s6_slabs <= s5_state.slabs - SLABS_W'(s5_ahead);
-    end
-    if (valid[6]) begin
-      s7_stride <= s6_stride;
-      s7_stride3 <= s6_stride3;
-      s7_main <= s6_main;
-      s7_slabs <= s6_slabs;
-    end
-    if (valid[7]) begin
-      s8_on <= s7_on;
-      s8_main <= s7_on ? s7_main : '0;
-      s8_side <= s7_side;
-      s8_off <= s7_off;
-      s8_half <= s7_half;
-      s8_rest <= s7_rest;
-      s8_slabs <= s7_slabs;
-      s8_enter <= s7_enter;
-      s8_sub <= s7_next_sub;
-      s8_going <= !done;
-    end
+    if (valid[7]) s8_going <= !done;
   end
   assign s8_writes = valid[8] && s8_going;
-  always_comb begin
-    s8_look = s8_state.block + s8_main + s8_side[0] + s8_side[1];
-    s8_next = s8_state;
-    if (s8_on) begin
-      s8_next.block = s8_look;
-      s8_next.slabs = s8_slabs;
-      s8_next.first = 2'd0;
-      s8_next.enter = s8_enter;
-      s8_next.low = '0;
-      s8_next.rest = s8_rest;
-      for (int unsigned n = 0; n < 2; n++) begin
-        s8_next.half[n] = {1'b0, s8_half[n][1:0]};
-        s8_next.limit[n] = s8_state.limit[n] - AXIS_W'({s8_off[n], 2'b00});
-      end
-    end
-  end
 
   // For --explain.
   logic [BLOCK_W-1:0] s2_look, s3_look, s4_look, s5_look, s6_look, s7_look;
@@ -502,13 +380,11 @@ module gridrt_traverse #(
   assign tap_jump_o = s7_jump;
 
   logic unused;
-  assign unused = &{1'b0, queue_ready, queue_count, s7_state, s5_way};
+  assign unused = &{1'b0, s7_state};
 
 `ifdef GRIDRT_ASSERT
   always_ff @(posedge clk_i) begin
     if (rst_ni) begin
-      assert (!push || queue_ready);
-      assert (32'(credits) + 32'(queue_count) <= QUEUE);
       assert (!done_valid_o || !again);
       if (start) assert (slot_of(place(start_slot_i)) == start_slot_i);
       if (start) assert (32'(start_slot_i) < SLOTS);
