@@ -24,8 +24,8 @@ enum class ErrorKind {
 /// A failure with a message that names the place and advice that says what to do.
 struct Error {
   ErrorKind kind = ErrorKind::kInternal;
-  std::string message;
-  std::string advice;  ///< empty where the message says it all
+  std::string message = {};
+  std::string advice = {};  ///< empty where the message says it all
 };
 
 /// A value or an Error; the return type of everything that can fail.

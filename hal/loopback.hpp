@@ -15,8 +15,8 @@ namespace gridrt {
 /// What a LoopbackTransport does to the bytes; by default nothing.
 struct LoopbackOptions {
   std::size_t max_transfer = 0;  ///< cut transfers at random sizes in [1, this]; 0: never
-  FaultRates to_device;          ///< faults on frames from host to device
-  FaultRates to_host;            ///< faults on frames from device to host
+  FaultRates to_device = {};     ///< faults on frames from host to device
+  FaultRates to_host = {};       ///< faults on frames from device to host
   std::uint64_t seed = 1;        ///< of cuts and faults
 };
 

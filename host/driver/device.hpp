@@ -32,7 +32,7 @@ enum class Query { kClosestHit, kAnyHit };
 /// How to open a device and talk to it.
 struct DeviceOptions {
   std::string name = "auto";           ///< auto, seq, omp; usb[:SERIAL], sim, mpi when built in
-  std::string schedule;                ///< of software PEs: rays, pes or paper; empty: the
+  std::string schedule = {};           ///< of software PEs: rays, pes or paper; empty: the
                                        ///< device's own (omp: rays, mpi: pes)
   int threads = 0;                     ///< of omp; 0: all cores (paper: one for each PE)
   std::size_t rays_per_frame = 32768;  ///< batch size on the link, >= 1
@@ -41,7 +41,7 @@ struct DeviceOptions {
   bool spread_rays = true;  ///< to a clocked device: neighbours far apart (ray_order.hpp)
   /// Software PEs that say, and keep to, less than they could: for tests. The device `seq-board`
   /// is `seq` with board_capabilities().
-  std::optional<protocol::CapabilitiesReport> capabilities;
+  std::optional<protocol::CapabilitiesReport> capabilities = std::nullopt;
   bool pes_interrupt = true;  ///< schedule pes: a hit cancels the voxels behind it
   bool pes_feedback = true;   ///< schedule pes: a hit waits for the voxels before it.
                               ///< Both are for measurements; without feedback,

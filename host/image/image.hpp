@@ -20,14 +20,15 @@ namespace gridrt {
 /// How a scene is cut and stored.
 struct ImageOptions {
   int bits = kDefaultBits;
-  std::optional<glm::ivec3> grid;  ///< none: chosen from the scene
+  std::optional<glm::ivec3> grid = std::nullopt;  ///< none: chosen from the scene
   int pes = 4;
   Mapping mapping = Mapping::kBoxes;
   /// kCompact has the board's field widths and memory sizes, kWide is for software; kNone: what
   /// the device prefers (options_for, host/driver/image_options.hpp), and wide without one.
   protocol::Layout layout = protocol::Layout::kNone;
-  std::optional<MemorySizes> memory;  ///< of the device; none: the most that the layout allows
-  bool with_scene = true;             ///< keep materials, normals, lights and camera in the image
+  std::optional<MemorySizes> memory =
+      std::nullopt;        ///< of the device; none: the most that the layout allows
+  bool with_scene = true;  ///< keep materials, normals, lights and camera in the image
 };
 
 /// One section: its directory entry and its bytes.

@@ -35,7 +35,8 @@ class Engine {
 
   /// PE `number`, or nullptr if it is absent.
   [[nodiscard]] const Pe* pe(std::size_t number) const {
-    return pes_[number] ? &*pes_[number] : nullptr;
+    const std::optional<Pe>& pe = pes_[number];
+    return pe ? &*pe : nullptr;
   }
 
   /// The smallest key over the triangles of the PEs present. p0 != p1, both within the box.

@@ -36,9 +36,10 @@ std::uint32_t add_material(Scene& scene, Material material);
 
 /// How append_scene() places what it adds.
 struct Placement {
-  glm::dmat4 matrix{1.0};                 ///< affine: the last row is 0 0 0 1
-  std::optional<std::uint32_t> material;  ///< of all added triangles; none: those of `from`
-  std::uint32_t first_material = 0;       ///< otherwise: where the materials of `from` stand
+  glm::dmat4 matrix{1.0};  ///< affine: the last row is 0 0 0 1
+  std::optional<std::uint32_t> material =
+      std::nullopt;                  ///< of all added triangles; none: those of `from`
+  std::uint32_t first_material = 0;  ///< otherwise: where the materials of `from` stand
 };
 
 /// Adds the triangles of `from` under a placement: positions are transformed in double and rounded

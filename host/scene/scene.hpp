@@ -50,19 +50,19 @@ constexpr bool is_field_of_view(double degrees) { return degrees > 0.0 && degree
 /// Triangles with everything that shading needs. A triangle's index is its id: file order after
 /// splitting polygons into fans, degenerate ones included.
 struct Scene {
-  std::vector<glm::vec3> positions;  ///< finite float32, the nearest to the file's text
-  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< indices into positions
-  std::vector<glm::vec3> normals;                       ///< unit length, for smooth shading
+  std::vector<glm::vec3> positions = {};  ///< finite float32, the nearest to the file's text
+  std::vector<std::array<std::uint32_t, 3>> triangles = {};  ///< indices into positions
+  std::vector<glm::vec3> normals = {};                       ///< unit length, for smooth shading
   /// Indices into normals, one triple a triangle, or empty where no triangle is smooth; a triple
   /// of kNoIndex marks a flat triangle.
-  std::vector<std::array<std::uint32_t, 3>> triangle_normals;
-  std::vector<std::uint32_t> triangle_materials;  ///< index into materials, one a triangle
-  std::vector<Material> materials;                ///< at least one
-  std::vector<Light> lights;
-  std::optional<Camera> camera;       ///< none: the renderer frames the bounding box
-  glm::vec3 background{0.0F};         ///< colour of rays that leave the scene
-  glm::vec3 ambient_light{1.0F};      ///< times Material::ambient
-  std::vector<std::string> warnings;  ///< what a loader left out (textures, lines, points)
+  std::vector<std::array<std::uint32_t, 3>> triangle_normals = {};
+  std::vector<std::uint32_t> triangle_materials = {};  ///< index into materials, one a triangle
+  std::vector<Material> materials = {};                ///< at least one
+  std::vector<Light> lights = {};
+  std::optional<Camera> camera = std::nullopt;  ///< none: the renderer frames the bounding box
+  glm::vec3 background{0.0F};                   ///< colour of rays that leave the scene
+  glm::vec3 ambient_light{1.0F};                ///< times Material::ambient
+  std::vector<std::string> warnings = {};  ///< what a loader left out (textures, lines, points)
 };
 
 }  // namespace gridrt

@@ -10,6 +10,21 @@ import unittest
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 BUILD, COMPILER = sys.argv[1:3]
+OPTIONS = """
+#include <gridrt.hpp>
+#include <host/render/waves.hpp>
+#include <host/pe/software_device.hpp>
+#include <hal/loopback.hpp>
+using namespace gridrt;
+void use(const DeviceOptions&, const ImageOptions&, const RenderOptions&, const Scene&, const Ray&,
+         const Material&, const Light&, const Camera&, const LoopbackOptions&,
+         const SoftwareDeviceOptions&, const Error&);
+void make() {
+  use({.name = "seq"}, {.pes = 2}, {.width = 1}, {.positions = {}}, {.tmin = 1.0}, {.name = "a"},
+      {.kind = Light::Kind::kPoint}, {.fov_degrees = 1.0}, {.max_transfer = 1},
+      {.name = "seq"}, {.kind = ErrorKind::kInternal});
+}
+"""
 EXPECTED = "triangle 0 at t = 2\ntriangle -1 at t = inf\n"
 
 
@@ -36,6 +51,12 @@ class Package(unittest.TestCase):
             "-DCMAKE_CXX_FLAGS=-Wall -Wextra -Werror")
         run("cmake", "--build", self.build)
         self.assertEqual(run(self.build / "trace"), EXPECTED)
+
+    def test_options_are_made_by_naming_some_of_them(self):
+        users = pathlib.Path(self.prefix) / "options.cpp"
+        users.write_text(OPTIONS, encoding="utf-8")
+        run(COMPILER, "-std=c++23", "-Wall", "-Wextra", "-Werror", "-fsyntax-only",
+            "-I", self.prefix / "include" / "gridrt", users)
 
     def test_programs_run_from_where_they_are_installed(self):
         for program in ("gridrt-host", "gridrt-image"):
