@@ -1,0 +1,13 @@
+# The processing element: its exact test and division against wide integers.
+foreach(bits 12 14 17)
+  gridrt_rtl_bench(rtl_triangle_${bits} TOP gridrt_triangle PARAMETERS B=${bits} META=32
+                   SOURCES triangle_bench.cpp)
+  gridrt_rtl_bench(rtl_quotient_${bits} TOP gridrt_quotient PARAMETERS B=${bits}
+                   SOURCES quotient_bench.cpp)
+endforeach()
+gridrt_rtl_bench(rtl_resolve_17 TOP gridrt_resolve PARAMETERS B=17 TRIS=64 SLOTS=48 DIVIDERS=3
+                 SOURCES resolve_bench.cpp)
+gridrt_rtl_bench(rtl_resolve_14 TOP gridrt_resolve PARAMETERS B=14 TRIS=200 SLOTS=5 DIVIDERS=2
+                 SOURCES resolve_bench.cpp)
+gridrt_rtl_bench(rtl_resolve_12 TOP gridrt_resolve PARAMETERS B=12 TRIS=16 SLOTS=1 DIVIDERS=1
+                 SOURCES resolve_bench.cpp)
