@@ -36,4 +36,7 @@ module gridrt_limits #(
     end
   end
   assign limit_o = has[INDEX_W'(slot_i)] ? kept : '1;
+
+  logic unused;  // with few slots
+  assign unused = (^alloc_i.slot) ^ (^interrupt_i.slot) ^ (^slot_i);
 endmodule

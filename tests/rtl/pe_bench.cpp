@@ -1,0 +1,109 @@
+// gridrt_pe with random images, rays, tasks, interrupts and pauses: each task ends once, with all
+// of its hits unless it may be cancelled, and a test starts in nearly every clock with work.
+#include <iostream>
+
+#include "tests/rtl/pe_driver.hpp"
+
+namespace gridrt::rtl {
+namespace {
+
+constexpr std::int64_t kWhole = (std::int64_t{1} << kPeBits) - 1;
+
+using Pe = PeDriver;
+
+// Without interrupts nothing may be left out: not a test, not a hit.
+TEST_F(Pe, MakesEveryTestWithoutInterrupts) {
+  for (const std::int64_t size : {std::int64_t{5}, std::int64_t{60}, kWhole}) {
+    load(size, 5);
+    run({.offer = 60, .take = 80}, 12'000);
+    drain({});
+    if (HasFatalFailure()) return;
+    ASSERT_EQ(skipped_tests, 0);
+    ASSERT_EQ(counts().tests, expected_tests);
+    ASSERT_EQ(counts().masked, expected_masked);
+    ASSERT_EQ(counts().cancelled, 0);
+    ASSERT_EQ(counts().lasts + counts().drops, counts().tasks);
+  }
+  EXPECT_GT(counts().tasks, 3000);
+  EXPECT_GT(counts().hits, 500);
+  EXPECT_GT(counts().drops, 100) << "these masks leave something of every task";
+}
+
+TEST_F(Pe, EndsEveryTaskOnceUnderInterruptsAndPauses) {
+  for (const int take : {100, 50, 8}) {
+    for (const int interrupts : {20, 200, 1000}) {
+      load(take == 50 ? 6 : 200, 5);
+      const PeTraffic traffic{.offer = 90, .take = take, .interrupts = interrupts};
+      run(traffic, 4000);
+      drain(traffic);
+      if (HasFatalFailure()) return;
+    }
+  }
+  EXPECT_GT(counts().tasks, 3000);
+  if (kCancels) {
+    EXPECT_GT(counts().cancelled, 300);
+  } else {
+    EXPECT_EQ(counts().cancelled, 0);
+    EXPECT_EQ(counts().tests, expected_tests);
+  }
+}
+
+// Limits come from the PE's own hits, long tasks are cut short.
+TEST_F(Pe, LivesWithItsOwnInterrupts) {
+  load(kWhole, 3);
+  const PeTraffic traffic{.offer = 100, .take = 90, .feedback = true, .list = 60, .near = 0};
+  run(traffic, 30'000);
+  drain(traffic);
+  EXPECT_GT(counts().hits, 300);
+}
+
+// A reader that stops: the PE fills up to its bounds (its assertions watch them), loses nothing.
+TEST_F(Pe, FillsUpAndRecovers) {
+  load(40, 3);
+  for (int round = 0; round < 20; ++round) {
+    run({.offer = 100, .take = 0}, 400);
+    if (HasFatalFailure()) return;
+    const long before = counts().tasks;
+    run({.offer = 100, .take = 0}, 100);
+    if (HasFatalFailure()) return;
+    ASSERT_EQ(counts().tasks, before) << "a PE that is full takes tasks";
+    // Waiting, in fetch (a task and eight rows), results, lanes.
+    ASSERT_LE(pending(), GRIDRT_RTL_QUEUE + 9 + 32 + 1 + GRIDRT_RTL_DIVIDERS);
+    drain({});
+    if (HasFatalFailure()) return;
+  }
+}
+
+#ifndef GRIDRT_STALL
+// The pace: tests for each clock in which there is work, whatever the lengths of the lists.
+TEST_F(Pe, MakesATestAClock) {
+  struct Load {
+    const char* name;
+    int list;
+    unsigned sparse;
+    double least;
+  };
+  // A hit in ten tests is too much for one divider.
+  constexpr double kShare = GRIDRT_RTL_DIVIDERS >= 3 ? 0.9 : 0.4;
+  for (const Load& l : {Load{"lists of 1", 1, 0, kShare}, Load{"lists of 1 to 3", 3, 0, kShare},
+                        Load{"lists of 1 to 12, a tenth masked", 12, 1, kShare},
+                        Load{"lists of 1 to 40, a third masked", 40, 3, kShare}}) {
+    load(kWhole, l.sparse);
+    const Counts before = counts();
+    run({.list = l.list}, 10'000);
+    if (HasFatalFailure()) return;
+    const double pace = static_cast<double>(counts().tests - before.tests) /
+                        static_cast<double>(counts().busy - before.busy);
+    std::cout << l.name << ": " << pace << " tests a clock with work, "
+              << static_cast<double>(counts().hits - before.hits) /
+                     static_cast<double>(counts().tests - before.tests)
+              << " hits a test\n";
+    EXPECT_GE(pace, l.least) << l.name;
+    drain({});
+    if (HasFatalFailure()) return;
+  }
+}
+#endif
+
+}  // namespace
+}  // namespace gridrt::rtl
