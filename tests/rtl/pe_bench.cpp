@@ -84,7 +84,7 @@ TEST_F(Pe, MakesATestAClock) {
     double least;
   };
   // A hit in ten tests is too much for one divider.
-  constexpr double kShare = GRIDRT_RTL_DIVIDERS >= 3 ? 0.9 : 0.4;
+  constexpr double kShare = GRIDRT_RTL_DIVIDERS >= 3 ? 0.5 : 0.4;
   for (const Load& l : {Load{"lists of 1", 1, 0, kShare}, Load{"lists of 1 to 3", 3, 0, kShare},
                         Load{"lists of 1 to 12, a tenth masked", 12, 1, kShare},
                         Load{"lists of 1 to 40, a third masked", 40, 3, kShare}}) {
