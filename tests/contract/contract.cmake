@@ -1,4 +1,8 @@
+# What they start from, for tests of other folders too.
+add_library(gridrt_awkward STATIC ${CMAKE_CURRENT_LIST_DIR}/awkward.cpp)
+target_link_libraries(gridrt_awkward PUBLIC gridrt_bench PRIVATE gridrt_flags GTest::gtest)
+
 # The contract of every device, by name: a device joins by being built in.
 add_executable(contract answers_test.cpp errors_test.cpp limits_test.cpp fixture.cpp)
-target_link_libraries(contract PRIVATE gridrt_bench gridrt_flags GTest::gtest_main)
+target_link_libraries(contract PRIVATE gridrt_awkward gridrt_flags GTest::gtest_main)
 gtest_discover_tests(contract DISCOVERY_TIMEOUT 60)

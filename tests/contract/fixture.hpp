@@ -1,5 +1,4 @@
-// What every contract test starts from: the device's name, a scene with all that is awkward, rays
-// of all kinds, and the answers of seq.
+// What every contract test starts from: the device's name, and how answers are compared.
 #pragma once
 
 #include <memory>
@@ -11,25 +10,12 @@
 
 #include "host/driver/device.hpp"
 #include "host/image/image.hpp"
+#include "tests/contract/awkward.hpp"
 
 namespace gridrt::contract {
 
-/// A few hundred triangles: closed, sliver, coplanar, duplicate and degenerate ones.
-Scene awkward_scene(std::uint64_t seed);
-
-/// Segments of every kind on the scene's lattice; some ignore a triangle, some are misses by
-/// definition. GRIDRT_CONTRACT_RAYS (default 1500) is how many, for devices that are slow.
-std::vector<Segment> awkward_segments(const Scene& scene, int bits, std::uint64_t seed);
-
 /// Bit for bit, NaN included.
 bool same(const Hit& a, const Hit& b);
-
-/// Traces all segments; a failure fails the test.
-std::vector<Hit> trace(Device& device, std::span<const Segment> segments, Query query);
-
-/// The answers of seq with one PE, default grid and batch.
-std::vector<Hit> reference(const Scene& scene, int bits, std::span<const Segment> segments,
-                           Query query);
 
 /// The devices under test (adversarial/devices.hpp), and each schedule that one has besides its
 /// default: NAME or NAME+SCHEDULE.
