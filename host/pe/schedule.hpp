@@ -24,7 +24,8 @@ inline std::optional<Schedule> schedule_of(std::string_view name) {
 
 struct ScheduleOptions {
   Schedule schedule = Schedule::kRays;
-  int threads = 1;        ///< workers, >= 1; of kPaper 0: one for each PE of the image
+  int threads = 1;        ///< workers, >= 1; of kPaper 0: one for each PE of the image,
+                          ///< and never more
   bool interrupt = true;  ///< kPes: a hit cancels the voxels behind it; for measurements
   bool feedback = true;   ///< kPes: a hit waits for the voxels before it; off: wrong answers
 };

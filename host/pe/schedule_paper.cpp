@@ -61,10 +61,12 @@ void trace_paper(const CommittedImage& image, std::span<const BatchRay> rays,
                  std::span<std::byte> hits, const ScheduleOptions& options, PeCounters& counters) {
   const auto layout = static_cast<protocol::Layout>(image.header.layout);
   const std::uint32_t pes = image.header.pes;
-  const int threads = options.threads > 0 ? options.threads : static_cast<int>(pes);
+  const int most = std::max(1, static_cast<int>(pes));  // a thread without a PE would only wait
+  const int threads = options.threads > 0 ? std::min(options.threads, most) : most;
   std::vector<PeCounters> counts(static_cast<std::size_t>(threads));
   std::vector<std::uint64_t> arrivals(static_cast<std::size_t>(threads));
   Results results(pes);
+  std::size_t team = 1;  // there may be fewer threads than asked for
   std::vector<ListedVoxel> list;
   const std::uint64_t start = now_ns();
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -76,6 +78,7 @@ void trace_paper(const CommittedImage& image, std::span<const BatchRay> rays,
 #pragma omp parallel num_threads(threads)
       {
         const auto me = static_cast<std::size_t>(omp_get_thread_num());
+        if (me == 0) team = static_cast<std::size_t>(omp_get_num_threads());
         for (auto p = static_cast<std::uint32_t>(me); p < pes;
              p += static_cast<std::uint32_t>(omp_get_num_threads())) {
           run_pe(image.engine, r, list, p, results, counts[me]);
@@ -84,7 +87,7 @@ void trace_paper(const CommittedImage& image, std::span<const BatchRay> rays,
       }
       const std::uint64_t released = now_ns();
       ++counters.barriers;
-      for (const std::uint64_t arrival : arrivals) {
+      for (const std::uint64_t arrival : std::span(arrivals).first(team)) {
         counters.barrier_ns += released - std::min(arrival, released);
       }
       HitKey best;
@@ -96,7 +99,7 @@ void trace_paper(const CommittedImage& image, std::span<const BatchRay> rays,
     ++counters.rays;
     pack_answer(layout, r, answer, i, hits);
   }
-  counters.worker_ns += (now_ns() - start) * static_cast<std::uint64_t>(threads);
+  counters.worker_ns += (now_ns() - start) * team;
   for (const PeCounters& mine : counts) counters += mine;
 }
 
