@@ -79,9 +79,10 @@ module gridrt_pe #(
   assign write_vertex = mine && load_i.kind == VERTICES && 32'(load_i.index) < VERTS;
 
   // Tasks and references.
-  logic head_valid, head_ready, queue_drop_valid, queue_drop_ready, waiting, working;
+  logic head_valid, head_ready, fetch_valid, fetch_ready;
+  logic queue_drop_valid, queue_drop_ready, waiting, working;
   gridrt_pkg::task_t head;
-  logic reference_valid, reference_ready, none, last, aborted;
+  logic found_valid, found_ready, reference_valid, reference_ready, none, last, aborted;
   logic [SLOT_W-1:0] reference_slot;
   logic [TRI_W-1:0] reference_triangle;
 
@@ -104,6 +105,16 @@ module gridrt_pe #(
       .drop_ready_i(queue_drop_ready),
       .waiting_o(waiting)
   );
+  gridrt_stall #(
+      .SEED(4 * NUMBER + 1)
+  ) u_stall_task (
+      .clk_i,
+      .rst_ni,
+      .in_valid_i (head_valid),
+      .in_ready_o (head_ready),
+      .out_valid_o(fetch_valid),
+      .out_ready_i(fetch_ready)
+  );
 
   gridrt_fetch #(
       .SLOTS (SLOTS),
@@ -118,11 +129,11 @@ module gridrt_pe #(
       .write_i(write_reference),
       .write_index_i(load_i.index),
       .write_data_i(load_i.data[TRI_W+5:0]),
-      .task_valid_i(head_valid),
-      .task_ready_o(head_ready),
+      .task_valid_i(fetch_valid),
+      .task_ready_o(fetch_ready),
       .task_i(head),
-      .valid_o(reference_valid),
-      .ready_i(reference_ready),
+      .valid_o(found_valid),
+      .ready_i(found_ready),
       .none_o(none),
       .last_o(last),
       .slot_o(reference_slot),
@@ -130,6 +141,16 @@ module gridrt_pe #(
       .masked_o,
       .aborted_o(aborted),
       .working_o(working)
+  );
+  gridrt_stall #(
+      .SEED(4 * NUMBER + 2)
+  ) u_stall_reference (
+      .clk_i,
+      .rst_ni,
+      .in_valid_i (found_valid),
+      .in_ready_o (found_ready),
+      .out_valid_o(reference_valid),
+      .out_ready_i(reference_ready)
   );
 
   // A task without a test goes first, since the one that is cancelled can wait.
@@ -143,7 +164,7 @@ module gridrt_pe #(
   };
   assign drop_cancelled_o = (queue_drop_valid && queue_drop_ready) || aborted;
   assign test_o = test;
-  assign busy_o = waiting || working || reference_valid;
+  assign busy_o = waiting || working || found_valid;
 
   // Room for events: taken by tests, given back by results that make none and by events that leave.
   logic [ROOM_W-1:0] used;
@@ -283,6 +304,7 @@ module gridrt_pe #(
   );
   assign result_last = result[META-1];
 
+  logic resolved_valid, resolved_ready;
   gridrt_resolve #(
       .B(B),
       .TRIS(TRIS),
@@ -307,10 +329,20 @@ module gridrt_pe #(
       .tn_i(tn),
       .det_i(det),
       .taken_o(taken),
-      .event_valid_o,
-      .event_ready_i,
+      .event_valid_o(resolved_valid),
+      .event_ready_i(resolved_ready),
       .event_o,
       .wait_o(divider_wait_o)
+  );
+  gridrt_stall #(
+      .SEED(4 * NUMBER + 3)
+  ) u_stall_event (
+      .clk_i,
+      .rst_ni,
+      .in_valid_i (resolved_valid),
+      .in_ready_o (resolved_ready),
+      .out_valid_o(event_valid_o),
+      .out_ready_i(event_ready_i)
   );
 
   assign tap_test_valid_o = result_valid;

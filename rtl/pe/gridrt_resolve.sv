@@ -1,14 +1,15 @@
 // From tests to events: a hit gets its id, is ignored if the ray asks for that, and its quotient;
 // ends of tasks pass through. Everything leaves in the order in which it came.
 //
-// Lanes are filled in turn and emptied in turn. Each holds one event, divides if it must, and is
-// done at once otherwise.
+// Events wait in a queue that keeps their order; those with a hit take a divider, in turn, until
+// they leave. A miss behind a hit so costs nothing until that queue is full.
 module gridrt_resolve #(
     parameter int unsigned B = 17,
     parameter int unsigned TRIS = 4096,
     parameter int unsigned SLOTS = 48,
     parameter int unsigned DIVIDERS = 3,
     parameter int unsigned DEPTH = 32,  // tests that may wait here
+    parameter int unsigned ORDER = 16,  // events behind the one that leaves next: a division's time
     localparam int unsigned MAG_W = 3 * B + 2,
     localparam int unsigned COUNT_W = $clog2(DEPTH + 1)
 ) (
@@ -133,48 +134,61 @@ module gridrt_resolve #(
     end
   end
 
-  // Into the lanes.
-  logic real_hit, divides, useless;
-  logic [DIVIDERS-1:0] start, lane_used, lane_divides, lane_busy;
+  // Into the order of events and, for a hit, into the divider whose turn it is.
+  logic real_hit, divides, useless, order_room, free;
+  logic [DIVIDERS-1:0] start, used, dividing;
   logic [LANE_W-1:0] in_lane, out_lane;
   assign real_hit = stage_hit && id != stage_ignore;
   assign divides = real_hit && !stage_any;
   assign useless = !real_hit && !stage_last;  // an ignored triangle that ends nothing
-  assign stage_ready = useless || !lane_used[in_lane];
-  assign wait_o = stage_valid && divides && !stage_ready;
+  assign free = !used[in_lane];
+  assign stage_ready = useless || (order_room && (free || !divides));
+  assign wait_o = stage_valid && divides && !free;
 
   logic enters, leaves;
   assign enters = stage_valid && stage_ready && !useless;
 
-  logic [DIVIDERS-1:0][SLOT_W+ID_W+2-1:0] kept;
+  logic out_valid, out_divides, out_last, out_hit;
+  logic [SLOT_W-1:0] out_slot;
+  logic [ID_W-1:0] out_id;
+  logic [$clog2(ORDER+1)-1:0] order_count;
+  gridrt_fifo #(
+      .WIDTH(SLOT_W + ID_W + 3),
+      .DEPTH(ORDER)
+  ) u_order (
+      .clk_i,
+      .rst_ni,
+      .in_valid_i (enters),
+      .in_ready_o (order_room),
+      .in_data_i  ({divides, stage_slot, stage_last, real_hit, stage_any ? {ID_W{1'b0}} : id}),
+      .out_valid_o(out_valid),
+      .out_ready_i(leaves),
+      .out_data_o ({out_divides, out_slot, out_last, out_hit, out_id}),
+      .count_o    (order_count)
+  );
+
   logic [DIVIDERS-1:0][gridrt_pkg::Q_W-1:0] quotient;
   logic [DIVIDERS-1:0][gridrt_pkg::DIST_W-1:0] limit;
 
-  for (genvar i = 0; i < DIVIDERS; i++) begin : gen_lane
-    assign start[i] = enters && in_lane == LANE_W'(i);
+  for (genvar i = 0; i < DIVIDERS; i++) begin : gen_divider
+    assign start[i] = enters && divides && in_lane == LANE_W'(i);
     gridrt_quotient #(
         .B(B)
     ) u_quotient (
         .clk_i,
         .rst_ni,
-        .start_i(start[i] && divides),
+        .start_i(start[i]),
         .tn_i(stage_tn),
         .det_i(stage_det),
         .length_i(stage_length),
-        .busy_o(lane_busy[i]),
+        .busy_o(dividing[i]),
         .quotient_o(quotient[i]),
         .limit_o(limit[i])
     );
     always_ff @(posedge clk_i or negedge rst_ni) begin
-      if (!rst_ni) lane_used[i] <= 1'b0;
-      else if (start[i]) lane_used[i] <= 1'b1;
-      else if (leaves && out_lane == LANE_W'(i)) lane_used[i] <= 1'b0;
-    end
-    always_ff @(posedge clk_i) begin
-      if (start[i]) begin
-        kept[i] <= {stage_slot, stage_last, real_hit, stage_any ? {ID_W{1'b0}} : id};
-        lane_divides[i] <= divides;
-      end
+      if (!rst_ni) used[i] <= 1'b0;
+      else if (start[i]) used[i] <= 1'b1;
+      else if (leaves && out_divides && out_lane == LANE_W'(i)) used[i] <= 1'b0;
     end
   end
 
@@ -183,32 +197,24 @@ module gridrt_resolve #(
       in_lane  <= '0;
       out_lane <= '0;
     end else begin
-      if (enters) in_lane <= (in_lane == LAST_LANE) ? '0 : in_lane + 1'b1;
-      if (leaves) out_lane <= (out_lane == LAST_LANE) ? '0 : out_lane + 1'b1;
+      if (enters && divides) in_lane <= (in_lane == LAST_LANE) ? '0 : in_lane + 1'b1;
+      if (leaves && out_divides) out_lane <= (out_lane == LAST_LANE) ? '0 : out_lane + 1'b1;
     end
   end
 
-  // Out of the lanes.
-  logic out_last, out_hit;
-  logic [SLOT_W-1:0] out_slot;
-  logic [ID_W-1:0] out_id;
-  assign {out_slot, out_last, out_hit, out_id} = kept[out_lane];
-  assign event_valid_o = lane_used[out_lane] && !lane_busy[out_lane];
+  assign event_valid_o = out_valid && !(out_divides && dividing[out_lane]);
   assign leaves = event_valid_o && event_ready_i;
-
-  logic divided;
-  assign divided = lane_divides[out_lane];
   assign event_o = {
     out_slot,
     out_last,
     out_hit,
-    divided ? quotient[out_lane] : {gridrt_pkg::Q_W{1'b0}},
+    out_divides ? quotient[out_lane] : {gridrt_pkg::Q_W{1'b0}},
     out_id,
-    divided ? limit[out_lane] : {gridrt_pkg::DIST_W{1'b0}}
+    out_divides ? limit[out_lane] : {gridrt_pkg::DIST_W{1'b0}}
   };
 
   logic unused;
-  assign unused = (^count) ^ (^id_other) ^ entry_room;
+  assign unused = (^count) ^ (^id_other) ^ entry_room ^ (^order_count);
 
 `ifdef GRIDRT_ASSERT
   always_ff @(posedge clk_i) begin

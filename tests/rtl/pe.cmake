@@ -17,3 +17,9 @@ set(board B=17 SLOTS=48 QUEUE=16 REFS=11264 TRIS=4096 VERTS=2560 DIVIDERS=3 NUMB
 set(small B=12 SLOTS=6 QUEUE=3 REFS=300 TRIS=100 VERTS=64 DIVIDERS=1 NUMBER=2)
 gridrt_rtl_bench(rtl_pe_17 TOP gridrt_pe PARAMETERS ${board} SOURCES pe_bench.cpp)
 gridrt_rtl_bench(rtl_pe_12 TOP gridrt_pe PARAMETERS ${small} SOURCES pe_bench.cpp)
+gridrt_rtl_bench(rtl_pe_stalls TOP gridrt_pe PARAMETERS ${board} DEFINES GRIDRT_STALL
+                 SOURCES pe_bench.cpp)
+target_compile_definitions(rtl_pe_stalls PRIVATE GRIDRT_STALL)
+gridrt_rtl_bench(rtl_pe_no_cancel TOP gridrt_pe PARAMETERS ${small} "CANCEL=1'b0"
+                 SOURCES pe_bench.cpp)
+target_compile_definitions(rtl_pe_no_cancel PRIVATE GRIDRT_BENCH_NO_CANCEL)

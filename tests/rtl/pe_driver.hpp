@@ -2,7 +2,9 @@
 /// events with pauses, and holds the PE to the rules of pe_slot.hpp.
 #pragma once
 
+#include <algorithm>
 #include <deque>
+#include <iterator>
 #include <optional>
 #include <sstream>
 #include <vector>
@@ -31,6 +33,7 @@ struct PeTraffic {
   int interrupts = 0;     ///< per thousand clocks, at random
   bool feedback = false;  ///< each hit sends its limit back, as the engine does
   int list = 12;          ///< references of a task: 1 to this
+  int whole = 33;         ///< percent of tasks whose ray touches all halves of the voxel
   int near = 30;          ///< tasks enter at 0 to this, or anywhere for 0
 };
 
@@ -42,6 +45,7 @@ class PeDriver : public testing::Test {
     long tests = 0;
     long masked = 0;
     long busy = 0;
+    long work = 0;  ///< clocks that the tasks take at the least
     long hits = 0;
     long lasts = 0;
     long drops = 0;
@@ -186,7 +190,7 @@ class PeDriver : public testing::Test {
     t.count = 1 + static_cast<int>(random_() % static_cast<unsigned>(traffic.list));
     t.first =
         static_cast<int>(random_() % static_cast<unsigned>(kPeSizes.references - t.count + 1));
-    t.halves = random_() % 3 == 0 ? 63U : random_() % 64;
+    t.halves = percent(traffic.whole) ? 63U : random_() % 64;
     const unsigned most = traffic.near > 0 ? static_cast<unsigned>(traffic.near) : length;
     t.enter = random_() % (most + 1);
     return t;
@@ -247,6 +251,7 @@ class PeDriver : public testing::Test {
     expected_tests += static_cast<long>(sent.tests.size());
     expected_masked += sent.task.count - static_cast<long>(sent.tests.size());
     for (const PeTest& t : sent.tests) in_order_.push_back(t);
+    counts_.work += std::max<long>((sent.task.count + 1) / 2, std::ssize(sent.tests));
     slot.tasks.push_back(std::move(sent));
     ++counts_.tasks;
     ++pending_;

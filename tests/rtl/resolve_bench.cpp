@@ -148,14 +148,14 @@ TEST_P(Resolve, GivesEveryEventInOrder) {
   EXPECT_GT(events(), 1000);
 }
 
-// Ends of tasks that hit nothing leave one a clock (with one lane: every other clock).
+// Ends of tasks that hit nothing leave one a clock.
 TEST_P(Resolve, PassesMissesWithoutDelay) {
   const Rates misses{100, 100, 0};
   for (int i = 0; i < 2000; ++i) {
     clock(misses, true);
     if (HasFatalFailure()) return;
   }
-  EXPECT_GE(events(), GRIDRT_RTL_DIVIDERS > 1 ? 1980 : 980);
+  EXPECT_GE(events(), 1980);
 }
 
 // Dividers work side by side: hits alone leave at one in 15 clocks for each.
