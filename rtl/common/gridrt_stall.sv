@@ -1,14 +1,16 @@
-// A place in a stream where simulations with GRIDRT_STALL pause at random; else a pair of wires. It
-// keeps the rule of streams: what has been offered stays until it is taken.
+// A place in a stream where simulations with GRIDRT_STALL pause at random; else a pair of wires.
+// Behind it the rule of streams is checked: what has been offered stays until it is taken.
 module gridrt_stall #(
-    parameter int unsigned SEED = 1
+    parameter int unsigned SEED = 1,
+    parameter int unsigned WIDTH = 1
 ) (
     input  logic clk_i,
     input  logic rst_ni,
     input  logic in_valid_i,
     output logic in_ready_o,
     output logic out_valid_o,
-    input  logic out_ready_i
+    input  logic out_ready_i,
+    input  logic [WIDTH-1:0] data_i  // what the stream carries past it, for the check
 );
 `ifdef GRIDRT_STALL
   logic [15:0] random;
@@ -33,4 +35,13 @@ module gridrt_stall #(
   assign out_valid_o = in_valid_i;
   assign in_ready_o = out_ready_i;
 `endif
+  gridrt_stream_check #(
+      .WIDTH(WIDTH)
+  ) u_check (
+      .clk_i,
+      .rst_ni,
+      .valid_i(out_valid_o),
+      .ready_i(out_ready_i),
+      .data_i
+  );
 endmodule

@@ -73,14 +73,16 @@ module gridrt_engine #(
       .grid_o (grid)
   );
   gridrt_stall #(
-      .SEED(1)
+      .SEED(1),
+      .WIDTH(6 * B + ID_W + 1)
   ) u_ray_stall (
       .clk_i,
       .rst_ni,
       .in_valid_i (ray_valid_i),
       .in_ready_o (ray_ready_o),
       .out_valid_o(ray_valid),
-      .out_ready_i(ray_ready)
+      .out_ready_i(ray_ready),
+      .data_i({ray_p0_i, ray_p1_i, ray_ignore_i, ray_any_i})
   );
   gridrt_setup #(
       .B(B)
@@ -105,14 +107,16 @@ module gridrt_engine #(
       .miss_o(set_miss)
   );
   gridrt_stall #(
-      .SEED(2)
+      .SEED(2),
+      .WIDTH(6 * B + ID_W + 5)
   ) u_start_stall (
       .clk_i,
       .rst_ni,
       .in_valid_i (set_valid),
       .in_ready_o (set_ready),
       .out_valid_o(taken_valid),
-      .out_ready_i(taken_ready)
+      .out_ready_i(taken_ready),
+      .data_i({set_p0, set_d, set_ignore, set_any, set_miss})
   );
 
   // Answers.
@@ -189,14 +193,16 @@ module gridrt_engine #(
       .id_o(hit_id_o)
   );
   gridrt_stall #(
-      .SEED(3)
+      .SEED(3),
+      .WIDTH(ID_W + 1)
   ) u_hit_stall (
       .clk_i,
       .rst_ni,
       .in_valid_i (answer_valid),
       .in_ready_o (answer_ready),
       .out_valid_o(hit_valid_o),
-      .out_ready_i(hit_ready_i)
+      .out_ready_i(hit_ready_i),
+      .data_i({hit_o, hit_id_o})
   );
 
   // Tasks.
@@ -268,14 +274,16 @@ module gridrt_engine #(
   for (genvar p = 0; p < PES; p++) begin : gen_pe
     logic one_valid, one_ready, event_from, event_taken;
     gridrt_stall #(
-        .SEED(21 + p)
+        .SEED(21 + p),
+        .WIDTH(TASK_W)
     ) u_task_stall (
         .clk_i,
         .rst_ni,
         .in_valid_i (task_valid[p]),
         .in_ready_o (task_ready[p]),
         .out_valid_o(one_valid),
-        .out_ready_i(one_ready)
+        .out_ready_i(one_ready),
+        .data_i(tasks[p])
     );
     gridrt_pe #(
         .B(B),
@@ -316,14 +324,16 @@ module gridrt_engine #(
         .tap_test_hit_o(test_hit[p])
     );
     gridrt_stall #(
-        .SEED(31 + p)
+        .SEED(31 + p),
+        .WIDTH(EVENT_W)
     ) u_event_stall (
         .clk_i,
         .rst_ni,
         .in_valid_i (event_from),
         .in_ready_o (event_taken),
         .out_valid_o(event_valid[p]),
-        .out_ready_i(event_ready[p])
+        .out_ready_i(event_ready[p]),
+        .data_i(found[p])
     );
   end
 

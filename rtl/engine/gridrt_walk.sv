@@ -145,10 +145,10 @@ module gridrt_walk #(
   for (genvar e = 0; e < EXPS; e++) begin : gen_expander
     localparam int unsigned UNITS = (TUS - e + EXPS - 1) / EXPS;
     logic [UNITS-1:0] in_valid, in_ready;
-    logic [UNITS-1:0][BUNDLE_W-1:0] in_bundle;
+    logic [UNITS*BUNDLE_W-1:0] in_bundle;  // flat: yosys loses the width of an array here
     for (genvar u = 0; u < UNITS; u++) begin : gen_source
       assign in_valid[u] = bundle_valid[u*EXPS+e];
-      assign in_bundle[u] = bundle[u*EXPS+e];
+      assign in_bundle[u*BUNDLE_W+:BUNDLE_W] = bundle[u*EXPS+e];
       assign bundle_ready[u*EXPS+e] = in_ready[u];
     end
 
@@ -168,14 +168,16 @@ module gridrt_walk #(
         .out_data_o(one)
     );
     gridrt_stall #(
-        .SEED(11 + e)
+        .SEED(11 + e),
+        .WIDTH(BUNDLE_W)
     ) u_stall (
         .clk_i,
         .rst_ni,
         .in_valid_i(merged_valid),
         .in_ready_o(merged_ready),
         .out_valid_o(one_valid),
-        .out_ready_i(one_ready)
+        .out_ready_i(one_ready),
+        .data_i(one)
     );
 
     gridrt_expand #(
@@ -196,6 +198,15 @@ module gridrt_walk #(
         .task_o(task_o[e]),
         .task_pe_o(task_pe_o[e]),
         .drop_o(drop_o[e])
+    );
+    gridrt_stream_check #(
+        .WIDTH(TASK_W + PE_W)
+    ) u_task_check (
+        .clk_i,
+        .rst_ni,
+        .valid_i(task_valid_o[e]),
+        .ready_i(task_ready_i[e]),
+        .data_i ({task_o[e], task_pe_o[e]})
     );
   end
 

@@ -94,6 +94,8 @@ module gridrt_best #(
   assign better = hit_valid_o && (first || (FEEDBACK && key < best));
   assign lower = better && (first || hit_o.quotient < best[KEY_W-1:gridrt_pkg::ID_W]);
   assign has_hit_o = has_hit;
+  logic unused_slot;
+  assign unused_slot = &{1'b0, read_slot_i};  // its upper bits, where there are few slots
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin

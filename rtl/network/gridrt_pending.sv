@@ -104,7 +104,7 @@ module gridrt_pending #(
     above  = '0;
     many_o = '0;
     for (int unsigned b = 0; b < PLANES; b++) begin
-      if (b >= AHEAD_LOG) above = above | count[b];
+      if (b + 1 > AHEAD_LOG) above = above | count[b];
       if (b >= 1) many_o = many_o | count[b];
     end
   end

@@ -91,14 +91,16 @@ module gridrt_answers #(
       .count_o(sending)
   );
   gridrt_stall #(
-      .SEED(14)
+      .SEED(14),
+      .WIDTH(8)
   ) u_stall (
       .clk_i,
       .rst_ni,
       .in_valid_i(tx_valid),
       .in_ready_o(tx_ready),
       .out_valid_o(tx_valid_o),
-      .out_ready_i(tx_ready_i)
+      .out_ready_i(tx_ready_i),
+      .data_i(tx_data_o)
   );
 
   if (ANSWERS < 2) begin : gen_illegal

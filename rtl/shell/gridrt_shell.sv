@@ -58,14 +58,16 @@ module gridrt_shell #(
   // Bytes in.
   logic rx_valid, rx_ready;
   gridrt_stall #(
-      .SEED(11)
+      .SEED(11),
+      .WIDTH(8)
   ) u_rx_stall (
       .clk_i,
       .rst_ni,
       .in_valid_i(rx_valid_i),
       .in_ready_o(rx_ready_o),
       .out_valid_o(rx_valid),
-      .out_ready_i(rx_ready)
+      .out_ready_i(rx_ready),
+      .data_i(rx_data_i)
   );
   logic start_valid, start_ready, start_alien, byte_valid, byte_ready, end_valid, end_ready;
   logic end_good, bad_frame;
@@ -205,26 +207,30 @@ module gridrt_shell #(
       .ray_any_o
   );
   gridrt_stall #(
-      .SEED(12)
+      .SEED(12),
+      .WIDTH(6 * B + gridrt_pkg::ID_W + 1)
   ) u_ray_stall (
       .clk_i,
       .rst_ni,
       .in_valid_i(ray_valid),
       .in_ready_o(ray_ready),
       .out_valid_o(ray_valid_o),
-      .out_ready_i(ray_ready_i)
+      .out_ready_i(ray_ready_i),
+      .data_i({ray_p0_o, ray_p1_o, ray_ignore_o, ray_any_o})
   );
 
   logic hit_valid, hit_ready;
   gridrt_stall #(
-      .SEED(13)
+      .SEED(13),
+      .WIDTH(gridrt_pkg::ID_W + 1)
   ) u_hit_stall (
       .clk_i,
       .rst_ni,
       .in_valid_i(hit_valid_i),
       .in_ready_o(hit_ready_o),
       .out_valid_o(hit_valid),
-      .out_ready_i(hit_ready)
+      .out_ready_i(hit_ready),
+      .data_i({hit_i, hit_id_i})
   );
   gridrt_answers u_answers (
       .clk_i,
