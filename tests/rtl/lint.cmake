@@ -2,3 +2,7 @@
 add_test(NAME rtl_lint COMMAND ${Python3_EXECUTABLE} -B ${CMAKE_CURRENT_LIST_DIR}/lint_test.py
   --verilator ${GRIDRT_VERILATOR} --protocol ${PROJECT_BINARY_DIR}/generated/gridrt_protocol_pkg.sv
   ${PROJECT_SOURCE_DIR}/rtl)
+# Illegal parameters are refused.
+add_test(NAME rtl_parameters COMMAND ${Python3_EXECUTABLE} -B
+  ${CMAKE_CURRENT_LIST_DIR}/parameters_test.py --verilator ${GRIDRT_VERILATOR}
+  --protocol ${PROJECT_BINARY_DIR}/generated/gridrt_protocol_pkg.sv ${PROJECT_SOURCE_DIR}/rtl)
