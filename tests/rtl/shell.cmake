@@ -1,6 +1,11 @@
-# The shell: images, rays, faults of the link and registers, around a stand-in engine.
-gridrt_rtl_bench(rtl_shell TOP gridrt_shell
-                 PARAMETERS B=17 PES=4 BLOCKS=4096 CELLS=8192 REFS=11264 TRIS=4096 VERTS=2560
-                 SOURCES shell_bench.cpp shell_link_test.cpp shell_load_test.cpp shell_reports_test.cpp
-                 shell_trace_test.cpp
-                 LINK gridrt_driver gridrt_pe gridrt_image gridrt_scene gridrt_hal)
+# The shell: images, rays, faults of the link and registers, around a stand-in engine; as it is, and
+# with streams that stall at random.
+set(shell_model TOP gridrt_shell
+  PARAMETERS B=17 PES=4 BLOCKS=4096 CELLS=8192 REFS=11264 TRIS=4096 VERTS=2560)
+set(shell_sources shell_bench.cpp shell_link_test.cpp shell_load_test.cpp shell_reports_test.cpp
+  shell_trace_test.cpp)
+set(shell_libraries gridrt_driver gridrt_pe gridrt_image gridrt_scene gridrt_hal)
+gridrt_rtl_bench(rtl_shell ${shell_model} SOURCES ${shell_sources} shell_pace_test.cpp
+                 LINK ${shell_libraries})
+gridrt_rtl_bench(rtl_shell_stall ${shell_model} DEFINES GRIDRT_STALL SOURCES ${shell_sources}
+                 LINK ${shell_libraries})

@@ -56,17 +56,6 @@ TEST_P(ShellLoad, EveryRecordReachesItsMemory) {
 INSTANTIATE_TEST_SUITE_P(Bits, ShellLoad, testing::Values(6, 12, 14, 17),
                          [](const auto& bits) { return std::to_string(bits.param); });
 
-TEST(ShellLoad, TakesAByteAClock) {
-  const Image image = small_image(GRIDRT_RTL_B, GRIDRT_RTL_PES);
-  ShellBench bench;
-  send_image(bench, image, 1);
-  const auto bytes = static_cast<long>(bench.to_device.size());
-  const long start = bench.clocks();
-  while (!bench.to_device.empty()) bench.tick();
-  // Three clocks a frame, and what its head takes to check.
-  EXPECT_LE(bench.clocks() - start, bytes + bytes / 200);
-}
-
 TEST(ShellLoad, SmallerImagesAndMoreThanOne) {
   ShellBench bench;
   std::uint32_t sequence = 1;

@@ -86,24 +86,6 @@ TEST_F(ShellTrace, AnswersInOrderAtAnyPace) {
   }
 }
 
-TEST_F(ShellTrace, MovesAByteAClock) {
-  // 16 bytes a ray are the limit on the way in, 4 bytes a hit on the way out.
-  const auto rays = rays_in(image_, 1000, 3);
-  send_rays(rays, 20);
-  long start = bench_.clocks();
-  while (!bench_.to_device.empty()) bench_.tick();
-  EXPECT_LE(bench_.clocks() - start, 16 * 1000 + 60);
-  EXPECT_EQ(all().size(), 1U);
-  bench_.pace.hit = 0;
-  send_rays(rays, 21);
-  while (!bench_.to_device.empty()) bench_.tick();
-  bench_.pace.hit = 100;
-  start = bench_.clocks();
-  while (bench_.from_device.size() < 4000) bench_.tick();
-  EXPECT_LE(bench_.clocks() - start, 4 * 1000 + 10);
-  EXPECT_EQ(all().size(), 1U);
-}
-
 TEST_F(ShellTrace, ARepeatedTraceIsAnsweredAgain) {
   const auto rays = rays_in(image_, 9, 4);
   send_rays(rays, 30);
