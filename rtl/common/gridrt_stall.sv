@@ -2,7 +2,8 @@
 // Behind it the rule of streams is checked: what has been offered stays until it is taken.
 module gridrt_stall #(
     parameter int unsigned SEED = 1,
-    parameter int unsigned WIDTH = 1
+    parameter int unsigned WIDTH = 1,
+    parameter bit CHECK = 1'b1  // 0: an interrupt may take an offer back
 ) (
     input  logic clk_i,
     input  logic rst_ni,
@@ -35,13 +36,18 @@ module gridrt_stall #(
   assign out_valid_o = in_valid_i;
   assign in_ready_o = out_ready_i;
 `endif
-  gridrt_stream_check #(
-      .WIDTH(WIDTH)
-  ) u_check (
-      .clk_i,
-      .rst_ni,
-      .valid_i(out_valid_o),
-      .ready_i(out_ready_i),
-      .data_i
-  );
+  if (CHECK) begin : gen_check
+    gridrt_stream_check #(
+        .WIDTH(WIDTH)
+    ) u_check (
+        .clk_i,
+        .rst_ni,
+        .valid_i(out_valid_o),
+        .ready_i(out_ready_i),
+        .data_i
+    );
+  end else begin : gen_no_check
+    logic unused_data;
+    assign unused_data = &{1'b0, data_i};
+  end
 endmodule

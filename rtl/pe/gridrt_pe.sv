@@ -106,14 +106,16 @@ module gridrt_pe #(
       .waiting_o(waiting)
   );
   gridrt_stall #(
-      .SEED(4 * NUMBER + 1)
+      .SEED(4 * NUMBER + 1),
+      .CHECK(1'b0)
   ) u_stall_task (
       .clk_i,
       .rst_ni,
       .in_valid_i (head_valid),
       .in_ready_o (head_ready),
       .out_valid_o(fetch_valid),
-      .out_ready_i(fetch_ready)
+      .out_ready_i(fetch_ready),
+      .data_i(1'b0)
   );
 
   gridrt_fetch #(
@@ -143,14 +145,16 @@ module gridrt_pe #(
       .working_o(working)
   );
   gridrt_stall #(
-      .SEED(4 * NUMBER + 2)
+      .SEED(4 * NUMBER + 2),
+      .CHECK(1'b0)
   ) u_stall_reference (
       .clk_i,
       .rst_ni,
       .in_valid_i (found_valid),
       .in_ready_o (found_ready),
       .out_valid_o(reference_valid),
-      .out_ready_i(reference_ready)
+      .out_ready_i(reference_ready),
+      .data_i(1'b0)
   );
 
   // A task without a test goes first, since the one that is cancelled can wait.
@@ -335,14 +339,16 @@ module gridrt_pe #(
       .wait_o(divider_wait_o)
   );
   gridrt_stall #(
-      .SEED(4 * NUMBER + 3)
+      .SEED(4 * NUMBER + 3),
+      .WIDTH(gridrt_pkg::EVENT_W)
   ) u_stall_event (
       .clk_i,
       .rst_ni,
       .in_valid_i (resolved_valid),
       .in_ready_o (resolved_ready),
       .out_valid_o(event_valid_o),
-      .out_ready_i(event_ready_i)
+      .out_ready_i(event_ready_i),
+      .data_i(event_o)
   );
 
   assign tap_test_valid_o = result_valid;
