@@ -4,6 +4,7 @@
 #include <random>
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 
 #include "host/driver/device.hpp"
 #include "tests/adversarial/meshes.hpp"
