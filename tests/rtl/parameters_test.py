@@ -30,6 +30,10 @@ CASES = [
     ("gridrt_engine", {"TRIS": 4097}, "memory is larger"),
     ("gridrt_engine", {"VERTS": 4097}, "memory is larger"),
     ("gridrt_fifo", {"DEPTH": 0}, "DEPTH"),
+    ("gridrt_shell", {"B": 18}, "B must be"),
+    ("gridrt_shell", {"BLOCKS": 4097}, "memory is larger"),
+    ("gridrt_shell", {"MAX_PAYLOAD": 16386}, "MAX_PAYLOAD must be"),
+    ("gridrt_shell", {"LOG_WORDS": 500}, "WORDS must be"),
     ("gridrt_expand", {"DEPTH": 4}, "DEPTH below"),
     ("gridrt_traverse", {"QUEUE": 65}, "QUEUE must be"),
     ("gridrt_engine", {}, None),
@@ -38,6 +42,8 @@ CASES = [
     ("gridrt_engine", {"B": 12, "PES": 2, "TUS": 1, "SLOTS": 16, "QUEUE": 4, "ROB": 16}, None),
     ("gridrt_engine", {"TUS": 4, "SLOTS": 64}, None),
     ("gridrt_engine", {"TUS": 3}, None),
+    ("gridrt_shell", {"B": 12, "PES": 2, "MAX_PAYLOAD": 4194304, "LOG_WORDS": 64}, None),
+    ("gridrt_shell", {"PES": 1, "BLOCKS": 64, "CELLS": 100, "REFS": 200, "TRIS": 50}, None),
     ("gridrt_engine", {"AHEAD": 1, "CANCEL": 0, "MASK": 0, "FEEDBACK": 0}, None),
 ]
 
