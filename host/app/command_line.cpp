@@ -12,7 +12,9 @@ void add_cut_options(CLI::App& app, CutTexts& texts) {
   app.add_option("--bits", texts.bits, "lattice bits an axis: auto (17), or 4 to 24")
       ->group(kGroup)
       ->type_name("auto|B");
-  app.add_option("--grid", texts.grid, "voxels an axis; auto chooses by the number of triangles")
+  app.add_option("--grid", texts.grid,
+                 "voxels an axis; auto chooses by the number of triangles, in "
+                 "the compact layout by the work of sample rays")
       ->group(kGroup)
       ->type_name("auto|NXxNYxNZ");
   app.add_option(
@@ -21,7 +23,8 @@ void add_cut_options(CLI::App& app, CutTexts& texts) {
       ->group(kGroup)
       ->type_name("N");
   app.add_option("--mapping", texts.mapping,
-                 "how voxels are dealt to them: boxes (default), contiguous or voxel")
+                 "how voxels are dealt to them: measured (default: boxes, in the compact layout "
+                 "dealt by the work of sample rays), boxes, contiguous or voxel")
       ->group(kGroup)
       ->type_name("NAME");
   app.add_option(

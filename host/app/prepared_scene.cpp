@@ -41,7 +41,9 @@ Result<void> check_against(const std::string& path, const CutOptions& cut, const
     return refuse("--layout", layout_name(*cut.layout), layout_name(layout));
   }
   const auto mapping = static_cast<Mapping>(header.mapping);
-  if (cut.mapping && *cut.mapping != mapping) {
+  // Measured boxes are plain ones where there was nothing to measure.
+  if (cut.mapping && *cut.mapping != mapping &&
+      (*cut.mapping != Mapping::kMeasured || mapping != Mapping::kBoxes)) {
     return refuse("--mapping", mapping_name(*cut.mapping), mapping_name(mapping));
   }
   return {};

@@ -78,12 +78,29 @@ std::pair<VoxelBox, VoxelBox> cut_box(const VoxelGrid& grid, const VoxelLists& l
   return halves;
 }
 
+std::vector<VoxelBox> balanced_boxes(const VoxelGrid& grid, const VoxelLists& lists, int parts) {
+  std::vector<VoxelBox> boxes;
+  split(grid, lists, {glm::ivec3{0}, grid.count}, parts, boxes);
+  return boxes;
+}
+
+void give_box(const VoxelGrid& grid, const VoxelBox& box, std::uint8_t pe,
+              std::vector<std::uint8_t>& owners) {
+  for (int z = box.lo.z; z < box.hi.z; ++z) {
+    for (int y = box.lo.y; y < box.hi.y; ++y) {
+      const std::size_t row = grid.index({box.lo.x, y, z});
+      std::fill_n(owners.begin() + static_cast<std::ptrdiff_t>(row), box.hi.x - box.lo.x, pe);
+    }
+  }
+}
+
 Result<Mapping> parse_mapping(std::string_view name) {
-  for (const Mapping m : {Mapping::kBoxes, Mapping::kContiguous, Mapping::kVoxel}) {
+  for (const Mapping m :
+       {Mapping::kBoxes, Mapping::kContiguous, Mapping::kVoxel, Mapping::kMeasured}) {
     if (mapping_name(m) == name) return m;
   }
   return fail(ErrorKind::kUsage, fmt::format("mapping '{}' is not known", name),
-              "choose boxes, contiguous or voxel");
+              "choose measured, boxes, contiguous or voxel");
 }
 
 std::string_view mapping_name(Mapping mapping) {
@@ -94,6 +111,8 @@ std::string_view mapping_name(Mapping mapping) {
       return "contiguous";
     case Mapping::kVoxel:
       return "voxel";
+    case Mapping::kMeasured:
+      return "measured";
   }
   return "?";
 }
@@ -109,22 +128,13 @@ Result<std::vector<std::uint8_t>> deal_voxels(const VoxelGrid& grid, const Voxel
     std::iota(owner.begin(), owner.end(), std::uint8_t{0});
     return owner;
   }
-  std::vector<VoxelBox> boxes;
   if (mapping != Mapping::kVoxel) {
-    split(grid, lists, {glm::ivec3{0}, grid.count},
-          mapping == Mapping::kBoxes ? kBoxesPerPe * pes : pes, boxes);
-  }
-  for (std::size_t i = 0; i < boxes.size(); ++i) {
-    const auto pe = static_cast<std::uint8_t>(i % static_cast<std::size_t>(pes));
-    for (int z = boxes[i].lo.z; z < boxes[i].hi.z; ++z) {
-      for (int y = boxes[i].lo.y; y < boxes[i].hi.y; ++y) {
-        const std::size_t row = grid.index({boxes[i].lo.x, y, z});
-        std::fill_n(owner.begin() + static_cast<std::ptrdiff_t>(row), boxes[i].hi.x - boxes[i].lo.x,
-                    pe);
-      }
+    const int parts = mapping == Mapping::kContiguous ? pes : kBoxesPerPe * pes;
+    const std::vector<VoxelBox> boxes = balanced_boxes(grid, lists, parts);
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      give_box(grid, boxes[i], static_cast<std::uint8_t>(i % static_cast<std::size_t>(pes)), owner);
     }
-  }
-  if (mapping == Mapping::kVoxel) {
+  } else {
     for (int z = 0; z < grid.count.z; ++z) {
       for (int y = 0; y < grid.count.y; ++y) {
         for (int x = 0; x < grid.count.x; ++x) {

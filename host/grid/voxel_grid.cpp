@@ -8,7 +8,6 @@
 namespace gridrt {
 namespace {
 
-constexpr int kMinEdge = 4;  ///< lattice steps; the margin must stay small against a voxel
 constexpr std::size_t kMaxCells = std::size_t{1} << 28;
 
 /// About `density` voxels a triangle, as cubic in scene units as the box allows.
@@ -35,7 +34,7 @@ glm::ivec3 choose_counts(const Lattice& lattice, std::size_t triangles, double d
   }
   glm::ivec3 count;
   for (int a = 0; a < 3; ++a) {
-    const int finest = std::max(1, (lattice.box()[a] + 1) / kMinEdge);
+    const int finest = std::max(1, (lattice.box()[a] + 1) / kMinVoxelEdge);
     const double n = std::clamp(std::round(extent[a] / size), 1.0, 512.0);
     count[a] = std::min(static_cast<int>(n), finest);
   }
@@ -59,12 +58,12 @@ Result<VoxelGrid> make_grid(const Lattice& lattice, std::size_t triangles,
     // Voxels [k e, (k + 1) e] up to n e must cover [0, box].
     const int box = lattice.box()[a];
     if (n <= box) grid.edge[a] = std::max(1, (box + n - 1) / n);
-    if (n > 1 && (n > box || grid.edge[a] < kMinEdge)) {
+    if (n > 1 && (n > box || grid.edge[a] < kMinVoxelEdge)) {
       return fail(ErrorKind::kLimit,
                   fmt::format("a grid of {} voxels along {} is too fine for a lattice of {} steps",
                               n, axis, box),
                   fmt::format("use at most {} voxels along {}, or more --bits",
-                              std::max(1, box / kMinEdge), axis));
+                              std::max(1, box / kMinVoxelEdge), axis));
     }
   }
   // Each count is below 2^23 here, so that the product of two cannot wrap.

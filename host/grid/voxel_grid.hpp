@@ -14,6 +14,10 @@
 
 namespace gridrt {
 
+/// Fewest lattice steps of a voxel on an axis with more than one: the margin must stay small
+/// against it.
+inline constexpr int kMinVoxelEdge = 4;
+
 /// Voxel (i, j, k) is the closed lattice box [i edge.x, (i + 1) edge.x] x ...; together they cover
 /// the lattice box.
 struct VoxelGrid {

@@ -6,6 +6,7 @@
 #include "host/image/image.hpp"
 #include "host/image/lattice_scene.hpp"
 #include "host/image/limits.hpp"
+#include "host/image/measured_cut.hpp"
 #include "host/image/scene_section.hpp"
 #include "host/image/weld.hpp"
 
@@ -68,6 +69,7 @@ Result<LatticeScene> make_lattice_scene(const Scene& scene, const ImageOptions& 
 Result<Image> pack_with_grid(const LatticeScene& scene, const VoxelGrid& grid) {
   Cut cut = scene.cut;
   cut.grid = grid;
+  if (cut.mapping == Mapping::kMeasured) cut.mapping = Mapping::kBoxes;
   cut.lists = bin_triangles(grid, scene.local.triangles);
   auto owners = deal_voxels(grid, cut.lists, cut.mapping, cut.pes);
   if (!owners) return std::unexpected(std::move(owners.error()));
@@ -85,6 +87,10 @@ Result<Image> pack_whole(const LatticeScene& scene, std::optional<glm::ivec3> gr
     const auto asked = make_grid(cut.lattice, triangles, grid);
     if (!asked) return std::unexpected(asked.error());
     return pack_with_grid(scene, *asked);
+  }
+  if (cut.layout == protocol::Layout::kCompact && triangles > 0) {
+    Result<Image> measured = pack_measured(scene);
+    if (measured || measured.error().kind != ErrorKind::kLimit) return measured;
   }
   Result<Image> image = fail(ErrorKind::kInternal, "no grid was tried");
   double density = kGridDensity;

@@ -32,6 +32,7 @@ class Chunker {
         triangle_index_(scene.local.triangles.size(), kNone),
         vertex_index_(scene.local.vertices.size(), kNone) {
     cut_.grid = grid;
+    if (cut_.mapping == Mapping::kMeasured) cut_.mapping = Mapping::kBoxes;
   }
 
   Result<std::vector<Chunk>> run() {

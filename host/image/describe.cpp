@@ -72,7 +72,8 @@ std::string describe_lattice(const Image& image) {
 
 std::string describe_mapping(std::uint8_t mapping) {
   const auto known = static_cast<Mapping>(mapping);
-  for (const Mapping m : {Mapping::kBoxes, Mapping::kContiguous, Mapping::kVoxel}) {
+  for (const Mapping m :
+       {Mapping::kBoxes, Mapping::kContiguous, Mapping::kVoxel, Mapping::kMeasured}) {
     if (m == known) return std::string(mapping_name(m));
   }
   return fmt::format("unknown ({})", mapping);

@@ -22,7 +22,7 @@ struct ImageOptions {
   int bits = kDefaultBits;
   std::optional<glm::ivec3> grid = std::nullopt;  ///< none: chosen from the scene
   int pes = 4;
-  Mapping mapping = Mapping::kBoxes;
+  Mapping mapping = Mapping::kMeasured;
   /// kCompact has the board's field widths and memory sizes, kWide is for software; kNone: what
   /// the device prefers (options_for, host/driver/image_options.hpp), and wide without one.
   protocol::Layout layout = protocol::Layout::kNone;

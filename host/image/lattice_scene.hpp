@@ -19,7 +19,8 @@ Result<LatticeScene> make_lattice_scene(const Scene& scene, const ImageOptions& 
 /// Bins, deals and packs with one grid. Errors: those of deal_voxels and pack_image.
 Result<Image> pack_with_grid(const LatticeScene& scene, const VoxelGrid& grid);
 
-/// One image on the wanted grid or, without one, on the finest of a few that fit. Errors: kLimit if
+/// One image on the wanted grid or, without one, on one that is chosen: in the compact layout that
+/// on which rays cost least (pack_measured), else the finest of a few that fit. Errors: kLimit if
 /// none does, those of make_grid.
 Result<Image> pack_whole(const LatticeScene& scene, std::optional<glm::ivec3> grid);
 

@@ -139,6 +139,37 @@ Result<LocalTriangles> decode_local(const Image& image) {
   return local;
 }
 
+/// The owners that the cells name, where nothing else tells them; what cannot be right is left for
+/// the comparison to find.
+Result<std::vector<std::uint8_t>> stored_owners(const Image& image, const VoxelGrid& grid,
+                                                const VoxelLists& lists) {
+  const protocol::CellCodec codec(image.header);
+  const auto cells = find_records(image, SectionKind::kCells, 0, codec.stride());
+  if (!cells) return std::unexpected(cells.error());
+  const std::vector<std::uint8_t> occupancy = block_occupancy(grid, lists);
+  const std::size_t count = (*cells)->bytes.size() / codec.stride();
+  const glm::ivec3 blocks = block_count(grid);
+  std::vector<std::uint8_t> owners(grid.cells(), 0);
+  std::size_t next = 0;
+  std::size_t index = 0;
+  for (int z = 0; z < blocks.z; ++z) {
+    for (int y = 0; y < blocks.y; ++y) {
+      for (int x = 0; x < blocks.x; ++x, ++index) {
+        for (int bit = 0; bit < 8; ++bit) {
+          if (((occupancy[index] >> bit) & 1) == 0) continue;
+          if (next == count) return bad("section Cells: it ends too early");
+          const std::uint32_t pe = codec.at((*cells)->bytes, next++).pe;
+          if (pe >= image.header.pes) {
+            return bad(fmt::format("section Cells: cell {} belongs to PE {}", next - 1, pe));
+          }
+          owners[grid.index(block_voxel({x, y, z}, bit))] = static_cast<std::uint8_t>(pe);
+        }
+      }
+    }
+  }
+  return owners;
+}
+
 /// The image that build_image would have written for these triangles.
 Result<Image> rebuild(const Image& image, const LocalTriangles& local, const Lattice& lattice,
                       const VoxelGrid& grid) {
@@ -152,7 +183,9 @@ Result<Image> rebuild(const Image& image, const LocalTriangles& local, const Lat
     return bad(fmt::format("header: mapping {} is not known", image.header.mapping));
   }
   cut.lists = bin_triangles(grid, local.triangles);
-  auto owners = deal_voxels(grid, cut.lists, cut.mapping, cut.pes);
+  auto owners = cut.mapping == Mapping::kMeasured
+                    ? stored_owners(image, grid, cut.lists)
+                    : deal_voxels(grid, cut.lists, cut.mapping, cut.pes);
   if (!owners) return bad("header: " + owners.error().message);
   cut.owners = std::move(*owners);
   return pack_image(local, cut);

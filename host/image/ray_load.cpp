@@ -1,0 +1,225 @@
+#include "host/image/ray_load.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "host/grid/traversal.hpp"
+#include "host/image/blocks.hpp"
+
+namespace gridrt {
+namespace {
+
+/// More triangles are told apart by more rays.
+constexpr std::size_t kFewestRays = 32;  // a view
+constexpr std::size_t kMostRays = 256;
+constexpr std::size_t kTrianglesPerRay = 8;
+/// Towards the scene, off the axes, no two opposite.
+constexpr std::array<glm::ivec3, kViews> kDirections{
+    {{9, 3, -2}, {-9, 4, 3}, {2, 9, 4}, {4, -9, 2}, {-3, 2, 9}, {3, 4, -9}}};
+constexpr double kUnits = 2.0;  ///< traversal units and expanders of the board
+
+/// Bits 11 to 63 of splitmix64 (S. Vigna), in [0, 1): the same on every machine.
+class Uniform {
+ public:
+  double operator()() {
+    state_ += 0x9E3779B97F4A7C15U;
+    std::uint64_t z = state_;
+    z = (z ^ (z >> 30U)) * 0xBF58476D1CE4E5B9U;
+    z = (z ^ (z >> 27U)) * 0x94D049BB133111EBU;
+    return static_cast<double>((z ^ (z >> 31U)) >> 11U) * 0x1p-53;
+  }
+
+ private:
+  std::uint64_t state_ = 1;
+};
+
+/// Enters the box at a point of the three faces that `direction` meets from outside, evenly over
+/// what a viewer far away sees of them.
+Ray ray_through_box(const Lattice& lattice, const glm::ivec3& direction, Uniform& uniform) {
+  glm::dvec3 lo{0.0};
+  glm::dvec3 extent{0.0};
+  for (int a = 0; a < 3; ++a) {
+    lo[a] = static_cast<double>(lattice.lo[a]) - std::ldexp(2.0, -lattice.scale[a]);
+    extent[a] = std::ldexp(static_cast<double>(lattice.box()[a]), -lattice.scale[a]);
+  }
+  const double length = std::max({extent.x, extent.y, extent.z});
+  // In units of the longest side, so that no product overflows.
+  const glm::dvec3 e = extent / length;
+  glm::dvec3 seen{0.0};
+  for (int a = 0; a < 3; ++a) {
+    seen[a] = std::abs(direction[a]) * e[(a + 1) % 3] * e[(a + 2) % 3];
+  }
+  double pick = uniform() * (seen.x + seen.y + seen.z);
+  int face = 0;
+  while (face < 2 && pick >= seen[face]) pick -= seen[face++];
+  Ray ray;
+  for (int a = 0; a < 3; ++a) {
+    const double part = a == face ? (direction[a] > 0 ? 0.0 : 1.0) : uniform();
+    ray.direction[a] = static_cast<double>(direction[a]) * length;
+    ray.origin[a] = lo[a] + part * extent[a] - ray.direction[a];
+  }
+  return ray;
+}
+
+bool share_halves(unsigned a, unsigned b) {
+  const unsigned both = a & b;
+  return (both & 0x03U) != 0 && (both & 0x0CU) != 0 && (both & 0x30U) != 0;
+}
+
+/// A grid with what a traversal unit reads of it.
+class Walk {
+ public:
+  Walk(const VoxelGrid& grid, const VoxelLists& lists)
+      : grid_(grid),
+        lists_(lists),
+        blocks_(block_count(grid)),
+        occupancy_(block_occupancy(grid, lists)),
+        jumps_(skip_field(blocks_, occupancy_)) {}
+
+  [[nodiscard]] std::size_t block(const glm::ivec3& voxel) const {
+    const auto wide = [](int i) { return static_cast<std::size_t>(i); };
+    return (wide(voxel.z >> 1) * wide(blocks_.y) + wide(voxel.y >> 1)) * wide(blocks_.x) +
+           wide(voxel.x >> 1);
+  }
+  [[nodiscard]] int jump(const glm::ivec3& voxel, int direction) const {
+    return jumps_[block(voxel)][static_cast<std::size_t>(direction)];
+  }
+  [[nodiscard]] std::span<const VoxelReference> list(const glm::ivec3& voxel) const {
+    const std::size_t cell = grid_.index(voxel);
+    return std::span(lists_.references)
+        .subspan(lists_.first[cell], lists_.first[cell + 1] - lists_.first[cell]);
+  }
+
+  /// Calls visit(voxel visit) for the voxels met, up to the block-slab in which the ray has passed
+  /// `quotient`: its voxels are on their way to the PEs before any of them can answer. Returns the
+  /// number of blocks looked at.
+  template <class Visit>
+  int run(const Segment& s, std::uint32_t quotient, Visit&& visit) const {
+    int steps = 0;
+    SlabMarch march(grid_, s.p0, s.p1);
+    const int direction = march.direction();
+    const int axis = direction / 2;
+    while (march.has_slab()) {
+      std::span<const VoxelVisit> voxels = march.voxels();
+      if (voxels.empty()) {
+        march.next();
+        continue;
+      }
+      if (voxels.front().enter.quotient() > quotient) break;
+      const int ahead = jump(voxels.front().voxel, direction);
+      if (ahead > 0) {
+        ++steps;
+        march.skip_blocks(ahead);
+        continue;
+      }
+      const int slab = voxels.front().voxel[axis] >> 1;
+      std::array<std::size_t, 32> met{};
+      std::size_t count = 0;
+      while (!voxels.empty() && (voxels.front().voxel[axis] >> 1) == slab) {
+        for (const VoxelVisit& v : voxels) {
+          const auto end = met.begin() + static_cast<std::ptrdiff_t>(count);
+          const std::size_t here = block(v.voxel);
+          if (std::find(met.begin(), end, here) == end) met[count++] = here;
+          visit(v);
+        }
+        march.next();
+        if (!march.has_slab()) break;
+        voxels = march.voxels();
+      }
+      steps += static_cast<int>(count);
+    }
+    return steps;
+  }
+
+ private:
+  const VoxelGrid& grid_;
+  const VoxelLists& lists_;
+  glm::ivec3 blocks_;
+  std::vector<std::uint8_t> occupancy_;
+  std::vector<Jumps> jumps_;
+};
+
+}  // namespace
+
+RaySample::RaySample(const Lattice& lattice, std::span<const LatticeTriangle> triangles)
+    : triangles_(triangles) {
+  const std::size_t rays = std::clamp(triangles.size() / kTrianglesPerRay, kFewestRays, kMostRays);
+  Uniform uniform;
+  for (std::size_t view = 0; view < kViews; ++view) {
+    for (std::size_t i = 0; i < rays; ++i) {
+      const Ray ray = ray_through_box(lattice, kDirections[view], uniform);
+      // A box of nearly all of float32's range has rays that are no numbers.
+      if (!validate(ray)) continue;
+      const Segment segment = make_segment(lattice, ray);
+      if (segment.is_miss()) continue;
+      samples_.push_back({segment, view});
+      rays_[view] += 1.0;
+    }
+  }
+}
+
+void RaySample::find_hits(const VoxelGrid& grid, const VoxelLists& lists) {
+  const Walk walk(grid, lists);
+  for (Sample& s : samples_) {
+    const glm::ivec3 d = s.segment.p1 - s.segment.p0;
+    traverse(
+        grid, s.segment.p0, s.segment.p1,
+        [&](const glm::ivec3& voxel, int direction) { return walk.jump(voxel, direction); },
+        [&](const VoxelVisit& v) {
+          if (v.enter.quotient() > s.quotient) return false;
+          for (const VoxelReference& r : walk.list(v.voxel)) {
+            const auto hit =
+                intersect_narrow(s.segment.p0, d, EdgeTriangle(triangles_[r.triangle]));
+            if (hit) s.quotient = std::min(s.quotient, hit_quotient(*hit));
+          }
+          return true;
+        });
+  }
+  hits_known_ = true;
+}
+
+GridLoad RaySample::measure(const VoxelGrid& grid, const VoxelLists& lists) {
+  if (!hits_known_) find_hits(grid, lists);
+  const Walk walk(grid, lists);
+  GridLoad load;
+  for (std::vector<float>& work : load.work) work.assign(grid.cells(), 0.0F);
+  if (samples_.empty()) return load;
+  double steps = 0.0;
+  double tasks = 0.0;
+  for (const Sample& s : samples_) {
+    const auto share = static_cast<float>(1.0 / rays_[s.view]);
+    steps += walk.run(s.segment, s.quotient, [&](const VoxelVisit& v) {
+      const std::span<const VoxelReference> list = walk.list(v.voxel);
+      if (list.empty()) return;
+      const HalfMask halves = ray_halves(grid, s.segment.p0, s.segment.p1, v);
+      std::size_t tests = 0;
+      for (const VoxelReference& r : list) {
+        if (share_halves(r.mask, halves)) ++tests;
+      }
+      tasks += 1.0;
+      const std::size_t clocks = std::max({(list.size() + 1) / 2, tests, std::size_t{1}});
+      load.work[s.view][grid.index(v.voxel)] += share * static_cast<float>(clocks);
+    });
+  }
+  load.steps = steps / static_cast<double>(samples_.size());
+  load.tasks = tasks / static_cast<double>(samples_.size());
+  return load;
+}
+
+double estimate_clocks(const GridLoad& load, std::span<const std::uint8_t> owners, int pes) {
+  double busiest = 0.0;
+  std::vector<double> sums(static_cast<std::size_t>(pes));
+  for (const std::vector<float>& work : load.work) {
+    std::ranges::fill(sums, 0.0);
+    for (std::size_t i = 0; i < work.size(); ++i) sums[owners[i]] += work[i];
+    busiest += *std::ranges::max_element(sums) / static_cast<double>(kViews);
+  }
+  double sum = 0.0;
+  for (const double part : {load.steps / kUnits, load.tasks / kUnits, busiest}) {
+    sum += part * part * part * part;
+  }
+  return std::sqrt(std::sqrt(sum));
+}
+
+}  // namespace gridrt

@@ -1,0 +1,58 @@
+// What rays cost on a device that tests triangles in several PEs at once, measured with sample rays
+// on a grid that is considered.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "host/grid/intersect_narrow.hpp"
+#include "host/grid/lattice.hpp"
+#include "host/grid/segment.hpp"
+#include "host/grid/voxel_grid.hpp"
+
+namespace gridrt {
+
+inline constexpr std::size_t kViews = 6;  ///< directions from which sample rays come
+
+/// What the sample rays do on one grid; numbers are means of a ray. Work is the clocks that a PE
+/// spends with a voxel's list: it reads two references and tests one a clock.
+struct GridLoad {
+  double steps = 0.0;  ///< blocks looked at
+  double tasks = 0.0;  ///< voxels with triangles that are met
+  /// Work by voxel, for the rays of each view.
+  std::array<std::vector<float>, kViews> work;
+};
+
+/// Rays through the whole lattice box from six directions, evenly spread over what is seen of it
+/// from there, as a camera that has the box in view would send them; the same ones for the same
+/// scene.
+class RaySample {
+ public:
+  /// `triangles` outlive the sample; lattices of at most 17 bits.
+  RaySample(const Lattice& lattice, std::span<const LatticeTriangle> triangles);
+
+  /// Walks every ray up to its closest hit. `lists` are those of bin_triangles for this grid.
+  GridLoad measure(const VoxelGrid& grid, const VoxelLists& lists);
+
+ private:
+  struct Sample {
+    Segment segment;
+    std::size_t view = 0;
+    std::uint32_t quotient = 0xFFFFFFFFU;  ///< of the closest hit
+  };
+  void find_hits(const VoxelGrid& grid, const VoxelLists& lists);
+
+  std::span<const LatticeTriangle> triangles_;
+  std::vector<Sample> samples_;
+  std::array<double, kViews> rays_{};  ///< number by view
+  bool hits_known_ = false;
+};
+
+/// Clocks of a ray, estimated: the parts of a device work at the same time, so that the busiest one
+/// decides, and a little more the closer the others come. The busiest PE counts, view by view.
+/// `owners` are in [0, pes).
+double estimate_clocks(const GridLoad& load, std::span<const std::uint8_t> owners, int pes);
+
+}  // namespace gridrt

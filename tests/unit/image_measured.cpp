@@ -1,0 +1,122 @@
+// Grids and dealings that sample rays choose for the compact layout.
+#include <glm/common.hpp>
+
+#include "host/grid/partition.hpp"
+#include "host/image/blocks.hpp"
+#include "host/image/image_file.hpp"
+#include "host/image/ray_load.hpp"
+#include "host/scene/load.hpp"
+#include "image_support.hpp"
+
+namespace gridrt {
+namespace {
+
+Scene must_load(const std::string& spec) {
+  auto scene = load_scene(spec);
+  EXPECT_TRUE(scene) << scene.error().message;
+  return std::move(*scene);
+}
+
+ImageOptions compact() {
+  ImageOptions options;
+  options.layout = protocol::Layout::kCompact;
+  options.with_scene = false;
+  return options;
+}
+
+/// Owner of each voxel with references, 0 elsewhere, as the image says.
+std::vector<std::uint8_t> owners_of(const Image& image) {
+  const VoxelGrid grid = image.grid();
+  const auto triangles = decode_triangles(image);
+  const VoxelLists lists = bin_triangles(grid, triangles->triangles);
+  const std::vector<std::uint8_t> occupancy = block_occupancy(grid, lists);
+  const protocol::CellCodec codec(image.header);
+  const auto& bytes = image.find(protocol::SectionKind::kCells)->bytes;
+  std::vector<std::uint8_t> owners(grid.cells(), 0);
+  const glm::ivec3 blocks = block_count(grid);
+  std::size_t next = 0;
+  for (int i = 0; i < blocks.x * blocks.y * blocks.z; ++i) {
+    const glm::ivec3 block{i % blocks.x, i / blocks.x % blocks.y, i / blocks.x / blocks.y};
+    for (int bit = 0; bit < 8; ++bit) {
+      if (((occupancy[static_cast<std::size_t>(i)] >> bit) & 1) == 0) continue;
+      owners[grid.index(block_voxel(block, bit))] =
+          static_cast<std::uint8_t>(codec.at(bytes, next++).pe);
+    }
+  }
+  return owners;
+}
+
+double clocks_of(const Image& image) {
+  const auto triangles = decode_triangles(image);
+  RaySample sample(image.lattice(), triangles->triangles);
+  const VoxelGrid grid = image.grid();
+  const VoxelLists lists = bin_triangles(grid, triangles->triangles);
+  return estimate_clocks(sample.measure(grid, lists), owners_of(image), image.header.pes);
+}
+
+TEST(Measured, CheaperThanCoarserGridsAndPlainDealing) {
+  for (const char* spec : {"builtin:teapot?tessellation=10", "builtin:sphere?subdivisions=4",
+                           "builtin:sheet?triangles=6000&depth=0.5"}) {
+    const Scene scene = must_load(spec);
+    const Image image = must_build(scene, compact());
+    EXPECT_EQ(static_cast<Mapping>(image.header.mapping), Mapping::kMeasured);
+    EXPECT_TRUE(verify_image(image)) << verify_image(image).error().message;
+    const double clocks = clocks_of(image);
+    ImageOptions other = compact();
+    other.grid = image.grid().count;
+    const Image plain = must_build(scene, other);
+    EXPECT_EQ(static_cast<Mapping>(plain.header.mapping), Mapping::kBoxes);
+    EXPECT_LE(clocks, clocks_of(plain)) << spec;
+    other.grid = glm::max(image.grid().count / 2, glm::ivec3{1});
+    EXPECT_LT(clocks, clocks_of(must_build(scene, other))) << spec;
+  }
+}
+
+TEST(Measured, ThirteenThousandTrianglesFit) {
+  // With as many boxes as a smaller mesh gets, copies of triangles would fill a PE's memory.
+  for (const char* spec :
+       {"builtin:teapot?tessellation=14", "builtin:sphere?kind=uv&segments=114"}) {
+    const Scene scene = must_load(spec);
+    EXPECT_GT(scene.triangles.size(), 12000U) << spec;
+    const Image image = must_build(scene, compact());
+    EXPECT_GT(block_total(image.grid()), 3600U) << spec;
+    EXPECT_TRUE(verify_image(image)) << verify_image(image).error().message;
+  }
+}
+
+TEST(Measured, TheSameImageTwiceAndWorkForAllPes) {
+  const Scene scene = must_load("builtin:teapot?tessellation=6");
+  for (const int pes : {1, 2, 3, 4}) {
+    ImageOptions options = compact();
+    options.pes = pes;
+    const Image image = must_build(scene, options);
+    EXPECT_EQ(serialize_image(image), serialize_image(must_build(scene, options)));
+    const auto counts = count_image(image);
+    for (int p = 0; p < pes; ++p) {
+      EXPECT_GT(counts[static_cast<std::size_t>(p)].references, 0U);
+    }
+    EXPECT_TRUE(verify_image(image)) << verify_image(image).error().message;
+  }
+}
+
+TEST(Measured, OddScenes) {
+  for (const char* spec : {"builtin:triangle", "builtin:quad", "builtin:cube?size=1,1000,1000",
+                           "builtin:cube?size=1e-30,1,1e30", "builtin:degenerate?whole=1",
+                           "builtin:empty", "builtin:teapots?tessellation=2&stray=100"}) {
+    const Image image = must_build(must_load(spec), compact());
+    EXPECT_TRUE(verify_image(image)) << spec << ": " << verify_image(image).error().message;
+  }
+  ImageOptions options = compact();
+  options.bits = 4;
+  EXPECT_TRUE(verify_image(must_build(random_scene(40, 3), options)));
+  // Smaller memories than the board's are kept to, too.
+  options = compact();
+  options.memory = MemorySizes{
+      .triangles = 300, .vertices = 300, .references = 900, .cells = 700, .blocks = 128};
+  const Image small = must_build(must_load("builtin:sphere?subdivisions=2"), options);
+  EXPECT_LE(block_total(small.grid()), 128U);
+  EXPECT_TRUE(verify_image(small));
+}
+
+}  // namespace
+}  // namespace gridrt
