@@ -1,0 +1,33 @@
+# Programs that measure clocks at the engine's ports, one for each configuration; tools/board-cycles
+# builds those that it needs. The default one shares the model of the engine's bench.
+find_package(CLI11 REQUIRED)
+find_package(nlohmann_json REQUIRED)
+add_library(gridrt_board_rays STATIC EXCLUDE_FROM_ALL board_rays.cpp)
+target_link_libraries(gridrt_board_rays PUBLIC gridrt_render gridrt_driver gridrt_scene
+                      PRIVATE gridrt_flags fmt::fmt)
+
+function(gridrt_engine_cycles name)
+  set(parameters B=17 PES=4 ${ARGN})
+  string(MAKE_C_IDENTIFIER "rtl_gridrt_engine_${parameters}" model)
+  if(NOT TARGET ${model})
+    gridrt_verilated(${model} TOP gridrt_engine PARAMETERS ${parameters})
+    set_target_properties(${model} PROPERTIES EXCLUDE_FROM_ALL TRUE)
+  endif()
+  add_executable(engine-cycles-${name} EXCLUDE_FROM_ALL engine_cycles.cpp engine_harness.cpp)
+  target_link_libraries(engine-cycles-${name} PRIVATE ${model} gridrt_board_rays gridrt_image
+    gridrt_flags CLI11::CLI11 nlohmann_json::nlohmann_json fmt::fmt)
+endfunction()
+gridrt_engine_cycles(board)
+gridrt_engine_cycles(slots-16 SLOTS=16)
+gridrt_engine_cycles(slots-32 SLOTS=32)
+gridrt_engine_cycles(units-1 TUS=1)
+gridrt_engine_cycles(units-2 TUS=2)
+gridrt_engine_cycles(units-3 TUS=3)
+gridrt_engine_cycles(units-4 TUS=4)
+gridrt_engine_cycles(mask-off MASK=0)
+gridrt_engine_cycles(cancel-off CANCEL=0)
+gridrt_engine_cycles(ahead-1 AHEAD=1)
+gridrt_engine_cycles(ahead-2 AHEAD=2)
+gridrt_engine_cycles(ahead-8 AHEAD=8)
+gridrt_engine_cycles(queue-4 QUEUE=4)
+gridrt_engine_cycles(queue-32 QUEUE=32)
