@@ -4,7 +4,7 @@
 module gridrt_core #(
     parameter int unsigned B = 17,  // lattice bits, 4 to 17
     parameter int unsigned PES = 4,  // 1, 2 or 4
-    parameter int unsigned TUS = 2,  // of the engine, as those below: gridrt_engine.sv
+    parameter int unsigned TUS = 4,  // of the engine, as those below: gridrt_engine.sv
     parameter int unsigned SLOTS = 48,
     parameter int unsigned ROB = 128,
     parameter int unsigned QUEUE = 16,

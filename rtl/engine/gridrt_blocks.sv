@@ -3,7 +3,7 @@
 // directions}. Each memory serves two traversal units.
 module gridrt_blocks #(
     parameter int unsigned BLOCKS = 4096,
-    parameter int unsigned TUS = 2,
+    parameter int unsigned TUS = 4,
     localparam int unsigned BLOCK_W = gridrt_pkg::BLOCK_W,
     localparam int unsigned RECORD_W = 22
 ) (
@@ -15,6 +15,7 @@ module gridrt_blocks #(
 );
   localparam int unsigned ADDRESS_W = (BLOCKS > 1) ? $clog2(BLOCKS) : 1;
   localparam int unsigned COPIES = (TUS + 1) / 2;
+  localparam int unsigned LOW_W = 18;
 
   if (BLOCKS < 1 || BLOCKS > (1 << BLOCK_W)) begin : gen_illegal
     $error("gridrt_blocks: BLOCKS must be 1 to 4096");
@@ -44,20 +45,37 @@ module gridrt_blocks #(
       assign unused = &{1'b0, b_data};
     end
 
+    // 18 bits and 4: the shapes that leave nothing of a block memory unused.
     gridrt_ram_tdp #(
-        .WIDTH(RECORD_W),
+        .WIDTH(LOW_W),
         .DEPTH(BLOCKS),
+        .BANK((BLOCKS > 1024) ? 1024 : BLOCKS),
         .OUTPUT_REGISTER(1'b1)
-    ) u_memory (
+    ) u_low (
         .clk_i,
         .a_write_i(write),
         .a_enable_i(write || enable_i[2*c]),
         .a_address_i(a_address),
-        .a_data_i(kept),
-        .a_data_o(data_o[2*c]),
+        .a_data_i(kept[LOW_W-1:0]),
+        .a_data_o(data_o[2*c][LOW_W-1:0]),
         .b_enable_i(b_enable),
         .b_address_i(b_address),
-        .b_data_o(b_data)
+        .b_data_o(b_data[LOW_W-1:0])
+    );
+    gridrt_ram_tdp #(
+        .WIDTH(RECORD_W - LOW_W),
+        .DEPTH(BLOCKS),
+        .OUTPUT_REGISTER(1'b1)
+    ) u_high (
+        .clk_i,
+        .a_write_i(write),
+        .a_enable_i(write || enable_i[2*c]),
+        .a_address_i(a_address),
+        .a_data_i(kept[RECORD_W-1:LOW_W]),
+        .a_data_o(data_o[2*c][RECORD_W-1:LOW_W]),
+        .b_enable_i(b_enable),
+        .b_address_i(b_address),
+        .b_data_o(b_data[RECORD_W-1:LOW_W])
     );
   end
 

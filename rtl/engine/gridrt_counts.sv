@@ -2,7 +2,7 @@
 // flight.
 module gridrt_counts #(
     parameter int unsigned SLOTS = 48,
-    parameter int unsigned TUS   = 2,
+    parameter int unsigned TUS   = 4,
     parameter int unsigned EXPS  = 2,
     parameter int unsigned PES   = 4
 ) (

@@ -3,7 +3,7 @@
 module gridrt_walk #(
     parameter int unsigned B = 17,
     parameter int unsigned SLOTS = 48,
-    parameter int unsigned TUS = 2,  // 1 to 4
+    parameter int unsigned TUS = 4,  // 1 to 4
     parameter int unsigned EXPS = 2,  // 1 or 2, at most TUS
     parameter int unsigned BLOCKS = 4096,
     parameter int unsigned CELLS = 8192,

@@ -2,7 +2,7 @@
 // hits, and commits a ray once its traversal is over and every task has answered.
 module gridrt_feedback #(
     parameter int unsigned SLOTS = 48,
-    parameter int unsigned TUS = 2,
+    parameter int unsigned TUS = 4,
     parameter int unsigned EXPS = 2,
     parameter int unsigned PES = 4,
     parameter int unsigned AHEAD = 4,

@@ -3,7 +3,7 @@
 // planes. Ends of tasks count two clocks later: a count may be too high for a moment, never too low.
 module gridrt_pending #(
     parameter int unsigned SLOTS = 48,
-    parameter int unsigned TUS   = 2,
+    parameter int unsigned TUS   = 4,
     parameter int unsigned ENDS  = 10,  // ports that end tasks, at most 12
     parameter int unsigned AHEAD = 4    // 1, 2, 4, 8 or 16
 ) (

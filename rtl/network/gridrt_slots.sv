@@ -2,7 +2,7 @@
 // take turns; one without a free slot is passed over. After reset the lists fill themselves.
 module gridrt_slots #(
     parameter int unsigned SLOTS = 48,
-    parameter int unsigned TUS   = 2
+    parameter int unsigned TUS   = 4
 ) (
     input  logic                          clk_i,
     input  logic                          rst_ni,

@@ -11,7 +11,7 @@
 module gridrt_traverse #(
     parameter int unsigned B = 17,
     parameter int unsigned SLOTS = 48,
-    parameter int unsigned TUS = 2,
+    parameter int unsigned TUS = 4,
     parameter int unsigned INDEX = 0,
     parameter bit CANCEL = 1'b1,  // 0: limits are ignored
     parameter int unsigned QUEUE = 16,  // bundles to the expander
