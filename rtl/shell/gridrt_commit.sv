@@ -86,7 +86,23 @@ module gridrt_commit #(
     assign half[a] = 10'((11'(header_i.count[a]) + 11'd1) >> 1);
   end
   logic covers, all_blocks;
-  assign covers = sum >= {11'd0, header_i.box[axis]};
+  logic [16:0] box;
+  logic [17:0] edges;
+  logic [9:0] count;
+  // Chosen by comparison: an index would be multiplied.
+  always_comb begin
+    box   = header_i.box[0];
+    edges = header_i.edges[0];
+    count = header_i.count[0];
+    for (int unsigned a = 1; a < 3; a++) begin
+      if (axis == 2'(a)) begin
+        box   = header_i.box[a];
+        edges = header_i.edges[a];
+        count = header_i.count[a];
+      end
+    end
+  end
+  assign covers = sum >= {11'd0, box};
   assign all_blocks = sum == {14'd0, blocks};
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
@@ -156,8 +172,8 @@ module gridrt_commit #(
             bits   <= half[2];
           end
           default: begin
-            addend <= 28'(header_i.edges[axis]);
-            bits   <= header_i.count[axis];
+            addend <= 28'(edges);
+            bits   <= count;
           end
         endcase
       end

@@ -75,7 +75,11 @@ module gridrt_image_header #(
   logic [16:0] limit;  // 2^bits - 2
   logic [16:0] box_now;
   assign limit = 17'((18'd1 << bits) - 18'd2);
-  assign box_now = header.box[axis];
+  // Chosen by comparison: an index would be multiplied.
+  always_comb begin
+    box_now = header.box[0];
+    for (int unsigned a = 1; a < 3; a++) if (axis == 2'(a)) box_now = header.box[a];
+  end
   always_comb begin
     wrong  = 1'b0;
     offset = {index, 2'd0};
@@ -218,18 +222,20 @@ module gridrt_image_header #(
         10'd1: header.pes <= word[26:24];
         10'd2: bits <= word[4:0];
         10'd3: sections <= {1'b0, word[31:16]};
-        10'd13, 10'd14, 10'd15: begin
-          header.max_q[axis] <= word[16:0];
-          header.box[axis]   <= word[16:0] + 17'd2;
-        end
-        10'd16, 10'd17, 10'd18: header.count[axis] <= word[9:0];
-        10'd19, 10'd20, 10'd21: header.edges[axis] <= word[17:0];
         10'd25: header.local_ids <= word[19:0];
         10'd28: header.cells <= word[13:0];
         default: begin
           if (in_directory && place[1:0] == 2'd2) bytes <= word[15:0];
         end
       endcase
+      for (int unsigned a = 0; a < 3; a++) begin
+        if (index == 10'(13 + a)) begin
+          header.max_q[a] <= word[16:0];
+          header.box[a]   <= word[16:0] + 17'd2;
+        end
+        if (index == 10'(16 + a)) header.count[a] <= word[9:0];
+        if (index == 10'(19 + a)) header.edges[a] <= word[17:0];
+      end
       if (in_directory && place[1:0] == 2'd0) begin
         kind <= word[7:0];
         pe   <= word[15:8];
