@@ -40,6 +40,6 @@ configure_package_config_file(
 write_basic_package_version_file(
   ${PROJECT_BINARY_DIR}/GridRTConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/GridRTConfig.cmake
-              ${PROJECT_BINARY_DIR}/GridRTConfigVersion.cmake cmake/FindGMP.cmake
+              ${PROJECT_BINARY_DIR}/GridRTConfigVersion.cmake cmake/FindGMP.cmake cmake/FindHighway.cmake
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/GridRT)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})

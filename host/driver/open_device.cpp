@@ -8,6 +8,7 @@
 #include "hal/loopback.hpp"
 #include "host/driver/device.hpp"
 #include "host/driver/session.hpp"
+#include "host/pe/ray_stream.hpp"
 #include "host/pe/software_device.hpp"
 
 namespace gridrt {
@@ -51,6 +52,14 @@ Result<ScheduleOptions> choose_schedule(const DeviceOptions& options) {
   out.interrupt = options.pes_interrupt;
   out.feedback = options.pes_feedback;
   if (options.name == "omp") {
+    out.plain = options.simd == "plain";
+    if (!out.plain && !stream_kernel(options.simd)) {
+      std::vector<std::string_view> names{"plain"};
+      for (const StreamKernel& kernel : stream_kernels()) names.push_back(kernel.name);
+      return fail(ErrorKind::kUsage, fmt::format("no vectors of kind '{}' here", options.simd),
+                  fmt::format("use one of: {}", fmt::join(names, ", ")));
+    }
+    out.simd = options.simd;
     const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
     const bool all = options.threads == 0 && *known != Schedule::kPaper;
     out.threads = all ? cores : options.threads;

@@ -66,6 +66,11 @@ Result<VoxelGrid> make_grid(const Lattice& lattice, std::size_t triangles,
                               std::max(1, box / kMinVoxelEdge), axis));
     }
   }
+  // Room for a traversal in single precision, which strays by less than 2^-20 of the box; where
+  // voxels are too small for it, that traversal is not for this grid.
+  const glm::ivec3 box = lattice.box();
+  const int wide = 1 + (std::max({box.x, box.y, box.z}) >> 20);
+  grid.margin = std::min(wide, std::max(1, std::min({grid.edge.x, grid.edge.y, grid.edge.z}) / 4));
   // Each count is below 2^23 here, so that the product of two cannot wrap.
   const std::size_t layer =
       static_cast<std::size_t>(grid.count.x) * static_cast<std::size_t>(grid.count.y);

@@ -191,7 +191,8 @@ Accepted<std::unique_ptr<CommittedImage>> ImageStore::commit(std::uint64_t pe_ma
   }
   Accepted<Engine> engine = Engine::assemble(std::move(*traversal), std::move(pes));
   if (!engine) return std::unexpected(engine.error());
-  return std::make_unique<CommittedImage>(CommittedImage{header_, std::move(*engine)});
+  return std::make_unique<CommittedImage>(
+      CommittedImage{header_, std::move(*engine), std::nullopt});
 }
 
 }  // namespace gridrt

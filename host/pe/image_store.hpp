@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "gridrt_protocol.hpp"
 #include "host/pe/capabilities.hpp"
 #include "host/pe/engine.hpp"
+#include "host/pe/ray_stream.hpp"
 #include "host/pe/refusal.hpp"
 
 namespace gridrt {
@@ -20,6 +22,7 @@ namespace gridrt {
 struct CommittedImage {
   protocol::ImageHeader header{};
   Engine engine;
+  std::optional<StreamImage> stream;  ///< of the schedule rays, unless plain
 };
 
 /// Memory grows with the bytes that have arrived, never with what a header promises.

@@ -32,6 +32,11 @@ class PeObserver {
 /// Sees the three sections of its own image and nothing else.
 class Pe {
  public:
+  struct Triangle {
+    EdgeTriangle edges;
+    std::uint32_t id = 0;
+  };
+
   /// Decodes a PE's sections and checks every index. `number` only names the PE in refusals.
   static Accepted<Pe> decode(const protocol::ImageHeader& header, std::uint8_t number,
                              std::span<const std::byte> references,
@@ -40,6 +45,15 @@ class Pe {
 
   /// References in this PE's memory.
   [[nodiscard]] std::size_t references() const { return references_.size(); }
+
+  /// The references [first, first + count), within references(), and a triangle that one names.
+  [[nodiscard]] std::span<const VoxelReference> list(std::uint32_t first,
+                                                     std::uint32_t count) const {
+    return std::span(references_).subspan(first, count);
+  }
+  [[nodiscard]] const Triangle& triangle(const VoxelReference& reference) const {
+    return triangles_[reference.triangle];
+  }
 
   /// Tests the references [first, first + count) whose half-voxel mask meets `halves` and lowers
   /// `best` to the smallest key found. The range lies within references().
@@ -51,10 +65,6 @@ class Pe {
                 PeCounters& counters) const;
 
  private:
-  struct Triangle {
-    EdgeTriangle edges;
-    std::uint32_t id = 0;
-  };
   [[nodiscard]] std::optional<ExactHit> intersect(const PeRay& ray, const glm::ivec3& d,
                                                   const Triangle& triangle) const;
 

@@ -5,16 +5,11 @@
 #include <vector>
 
 #include "gridrt_protocol.hpp"
+#include "host/pe/batch_ray.hpp"
 #include "host/pe/engine.hpp"
 #include "host/pe/image_store.hpp"
 
 namespace gridrt {
-
-/// A ray as it came, in either layout.
-struct BatchRay {
-  PeRay ray;
-  bool any_hit = false;
-};
 
 /// Unpacks whole ray records in the image's layout. Refuses a ray with a coordinate outside the
 /// box (detail: its index).

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 
 namespace gridrt {
@@ -24,6 +25,8 @@ inline std::optional<Schedule> schedule_of(std::string_view name) {
 
 struct ScheduleOptions {
   Schedule schedule = Schedule::kRays;
+  bool plain = true;      ///< kRays: an exact test after the other, the reference; else vectors
+  std::string simd = {};  ///< kind of vectors (ray_stream.hpp); empty: the widest
   int threads = 1;        ///< workers, >= 1; of kPaper 0: one for each PE of the image,
                           ///< and never more
   bool interrupt = true;  ///< kPes: a hit cancels the voxels behind it; for measurements

@@ -1,13 +1,14 @@
 #include "host/pe/schedule_rays.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include <omp.h>
 
 namespace gridrt {
 namespace {
 
-PeAnswer answer(const Engine& engine, const BatchRay& r, PeCounters& counters) {
+PeAnswer answer_plain(const Engine& engine, const BatchRay& r, PeCounters& counters) {
   if (r.ray.p0 == r.ray.p1) {
     ++counters.rays;
     return std::nullopt;
@@ -17,12 +18,31 @@ PeAnswer answer(const Engine& engine, const BatchRay& r, PeCounters& counters) {
   return std::nullopt;
 }
 
+void answer(const CommittedImage& image, std::span<const BatchRay> rays,
+            std::span<PeAnswer> answers, PeCounters& counters) {
+  if (image.stream) {
+    image.stream->kernel.trace(image.stream->layout, rays, answers, counters);
+    return;
+  }
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    answers[i] = answer_plain(image.engine, rays[i], counters);
+  }
+}
+
 }  // namespace
+
+std::optional<StreamImage> make_stream(const CommittedImage& image, std::string_view simd,
+                                       int threads) {
+  const std::optional<StreamKernel> kernel = stream_kernel(simd);
+  if (!kernel || !RayLayout::fits(image.engine)) return std::nullopt;
+  return StreamImage{*kernel,
+                     RayLayout::build(image.engine, image.header.bits, kernel->lanes, threads)};
+}
 
 void trace_rays(const CommittedImage& image, std::span<const BatchRay> rays,
                 std::span<std::byte> hits, int threads, PeCounters& counters) {
   const auto layout = static_cast<protocol::Layout>(image.header.layout);
-  constexpr std::size_t kPiece = 64;  // rays that a thread takes at a time
+  constexpr std::size_t kPiece = 1024;  // rays that a thread takes at a time
   const auto pieces = static_cast<std::ptrdiff_t>((rays.size() + kPiece - 1) / kPiece);
 #pragma omp parallel num_threads(threads) if (threads > 1)
   {
@@ -30,8 +50,12 @@ void trace_rays(const CommittedImage& image, std::span<const BatchRay> rays,
 #pragma omp for schedule(dynamic)
     for (std::ptrdiff_t piece = 0; piece < pieces; ++piece) {
       const std::size_t first = static_cast<std::size_t>(piece) * kPiece;
-      for (std::size_t i = first; i < std::min(rays.size(), first + kPiece); ++i) {
-        pack_answer(layout, rays[i], answer(image.engine, rays[i], mine), i, hits);
+      const std::span<const BatchRay> some =
+          rays.subspan(first, std::min(kPiece, rays.size() - first));
+      std::array<PeAnswer, kPiece> answers;
+      answer(image, some, std::span(answers).first(some.size()), mine);
+      for (std::size_t i = 0; i < some.size(); ++i) {
+        pack_answer(layout, some[i], answers[i], first + i, hits);
       }
     }
 #pragma omp critical

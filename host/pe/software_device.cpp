@@ -107,6 +107,10 @@ Accepted<void> SoftwareDevice::commit(std::span<const std::byte> payload) {
     state_ = protocol::DeviceState::kFailed;
     return std::unexpected(image.error());
   }
+  const ScheduleOptions& schedule = options_.schedule;
+  if (schedule.schedule == Schedule::kRays && !schedule.plain) {
+    (*image)->stream = make_stream(**image, schedule.simd, schedule.threads);
+  }
   image_ = std::move(*image);
   state_ = protocol::DeviceState::kReady;
   return {};

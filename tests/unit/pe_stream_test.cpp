@@ -1,0 +1,138 @@
+// The schedule rays on vectors: the answers of the plain one from every kind that this machine has.
+#include <algorithm>
+#include <bit>
+
+#include <gtest/gtest.h>
+
+#include "host/driver/device.hpp"
+#include "host/pe/empty_space.hpp"
+#include "host/pe/ray_candidate.hpp"
+#include "host/pe/ray_stream.hpp"
+#include "tests/adversarial/meshes.hpp"
+#include "tests/unit/pe_fixture.hpp"
+
+namespace gridrt {
+namespace {
+
+std::vector<Hit> answers(const Image& image, std::span<const Segment> segments, Query query,
+                         std::string_view simd, int threads) {
+  DeviceOptions options;
+  options.name = "omp";
+  options.simd = simd;
+  options.threads = threads;
+  std::vector<Hit> hits(segments.size());
+  auto device = open_device(options);
+  EXPECT_TRUE(device && (*device)->load(image));
+  EXPECT_TRUE((*device)->trace(segments, query, hits));
+  return hits;
+}
+
+std::size_t differences(std::span<const Hit> a, std::span<const Hit> b) {
+  const auto bits = [](double x) { return std::bit_cast<std::uint64_t>(x); };
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    n += a[i].id != b[i].id || bits(a[i].t) != bits(b[i].t) || bits(a[i].u) != bits(b[i].u) ||
+                 bits(a[i].v) != bits(b[i].v)
+             ? 1
+             : 0;
+  }
+  return n;
+}
+
+std::vector<Image> images(int bits) {
+  adversarial::Random random(5);
+  ImageOptions options;
+  options.bits = bits;
+  options.with_scene = false;
+  std::vector<Image> out;
+  for (const Scene& scene :
+       {load_scene("builtin:teapots").value(), adversarial::lattice_soup(400, 8, random),
+        adversarial::soup(900, 6.0, random), adversarial::slivers(300, 1e5, random),
+        adversarial::sheet(20, 0.3, random), adversarial::box(3, {-1, -1, -1}, {1, 2, 3})}) {
+    out.push_back(build_image(scene, options).value());
+  }
+  return out;
+}
+
+TEST(Stream, EveryKindOfVectorsAnswersLikeThePlainSchedule) {
+  std::size_t hits = 0;
+  for (const int bits : {8, 17, 20, 24}) {
+    for (const Image& image : images(bits)) {
+      const auto segments = fixture::random_segments(image, 3000, 11);
+      for (const Query query : {Query::kClosestHit, Query::kAnyHit}) {
+        const auto expected = answers(image, segments, query, "plain", 1);
+        hits += static_cast<std::size_t>(
+            std::ranges::count_if(expected, [](const Hit& hit) { return hit.id >= 0; }));
+        for (const StreamKernel& kernel : stream_kernels()) {
+          for (const int threads : {1, 3}) {
+            const auto got = answers(image, segments, query, kernel.name, threads);
+            EXPECT_EQ(differences(got, expected), 0U)
+                << kernel.name << ", " << bits << " bits, " << threads << " threads";
+          }
+        }
+      }
+    }
+  }
+  EXPECT_GT(hits, 10000U);
+}
+
+TEST(Stream, KindsAreTheWidestFirstAndTheBaselineLast) {
+  const auto kernels = stream_kernels();
+  ASSERT_FALSE(kernels.empty());
+  EXPECT_TRUE(std::ranges::is_sorted(kernels, std::ranges::greater{}, &StreamKernel::lanes));
+  EXPECT_EQ(kernels.back().name, "baseline");
+  EXPECT_EQ(stream_kernel("")->name, kernels.front().name);
+  EXPECT_FALSE(stream_kernel("mmx"));
+  DeviceOptions options;
+  options.name = "omp";
+  options.simd = "mmx";
+  const auto device = open_device(options);
+  ASSERT_FALSE(device);
+  EXPECT_EQ(device.error().kind, ErrorKind::kUsage);
+}
+
+TEST(Stream, QuotientsAreTheExactOnes) {
+  fixture::Random random(3);
+  for (int i = 0; i < 200000; ++i) {
+    const auto det = static_cast<std::int64_t>(random.next() >> (10 + random.below(53))) + 1;
+    auto tn = static_cast<std::int64_t>(random.next() % static_cast<std::uint64_t>(det + 1));
+    if (i % 4 == 0) {  // next to a multiple of det / 2^24, where the estimate may be off
+      const auto q = static_cast<Int128>(random.below(1 << 24));
+      tn = std::clamp<std::int64_t>(static_cast<std::int64_t>((q * det) >> 24) + random.below(2), 0,
+                                    det);
+    }
+    EXPECT_EQ(quotient_narrow(tn, det), hit_quotient({det, 0, 0, tn}));
+  }
+}
+
+TEST(Stream, EmptySpaceIsTheDistanceToTheNearestVoxelWithTriangles) {
+  fixture::Random random(4);
+  for (int round = 0; round < 40; ++round) {
+    const glm::ivec3 size{1 + random.below(9), 1 + random.below(9), 1 + random.below(9)};
+    std::vector<std::int32_t> codes(static_cast<std::size_t>(size.x * size.y * size.z), -1);
+    std::vector<glm::ivec3> full;
+    const auto at = [&](int x, int y, int z) -> std::int32_t& {
+      return codes[static_cast<std::size_t>((z * size.y + y) * size.x + x)];
+    };
+    for (int i = random.below(4); i > 0; --i) {
+      full.emplace_back(random.below(size.x), random.below(size.y), random.below(size.z));
+      at(full.back().x, full.back().y, full.back().z) = i;
+    }
+    measure_empty_space(size, codes);
+    for (int z = 0; z < size.z; ++z) {
+      for (int y = 0; y < size.y; ++y) {
+        for (int x = 0; x < size.x; ++x) {
+          int nearest = kFarthest;
+          for (const glm::ivec3& f : full) {
+            nearest = std::min(nearest,
+                               std::max({std::abs(f.x - x), std::abs(f.y - y), std::abs(f.z - z)}));
+          }
+          EXPECT_EQ(std::min(at(x, y, z), 0), -nearest);
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace gridrt
