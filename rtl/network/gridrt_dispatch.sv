@@ -79,15 +79,16 @@ module gridrt_dispatch #(
   logic [PES-1:0] waits;
   logic [PES-1:0][TASK_W-1:0] waiting;
   always_ff @(posedge clk_i or negedge rst_ni) begin
-    if (!rst_ni) begin
-      waits <= '0;
-    end else begin
-      waits <= out_valid_o & ~out_ready_i;
+    if (!rst_ni) waits <= '0;
+    else waits <= out_valid_o & ~out_ready_i;
+  end
+  always_ff @(posedge clk_i) begin
+    waiting <= out_task_o;
+    if (rst_ni) begin
       for (int unsigned p = 0; p < PES; p++) begin
         if (waits[p]) assert (out_valid_o[p] && out_task_o[p] == waiting[p]);
       end
     end
   end
-  always_ff @(posedge clk_i) waiting <= out_task_o;
 `endif
 endmodule

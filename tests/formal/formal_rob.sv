@@ -1,4 +1,5 @@
-// The reorder buffer: one ray, whichever it is, gets its own answer, once, at its place in the order.
+// The reorder buffer: one ray, whichever it is, gets its own answer, once, at its place in the
+// order.
 module formal_rob #(
     parameter int unsigned ROB = 4,
     localparam int unsigned ENTRY_W = $clog2(ROB),
