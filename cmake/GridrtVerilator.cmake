@@ -1,11 +1,12 @@
 # Simulation of RTL: Verilator makes a C++ class of a module, once for each choice of parameters.
 #
-# gridrt_verilated(NAME TOP module [PARAMETERS B=17 ...] [DEFINES MACRO ...] [FILES file.sv ...]
-#                  [TRACE])
-#   Static library NAME with the class V<module> (#include <Vmodule.h>). Modules below rtl/ are
-#   found by name and packages are read always; FILES names what lies elsewhere. Each parameter is
-#   a macro for users of the library, too: GRIDRT_RTL_B=17. GRIDRT_ASSERT is always defined, so
-#   that the assertions of the RTL are checked. Warnings are errors. TRACE: waves as FST.
+# gridrt_verilated(NAME TOP module [PREFIX class] [PARAMETERS B=17 ...] [DEFINES MACRO ...]
+#                  [FILES file.sv ...] [TRACE] [FAST])
+#   Static library NAME with the class V<module>, or that of PREFIX (#include <Vmodule.h>). Modules
+#   below rtl/ are found by name and packages are read always; FILES names what lies elsewhere. Each
+#   parameter is a macro for users of the library, too: GRIDRT_RTL_B=17. GRIDRT_ASSERT is defined,
+#   so that the assertions of the RTL are checked. Warnings are errors. TRACE: waves as FST.
+#   FAST: as fast as it gets, without assertions, registers without reset start as zeros.
 #
 # gridrt_rtl_bench(NAME TOP module SOURCES bench.cpp ... [LINK library ...] [and all of the above])
 #   GoogleTest executable NAME on that model, its tests known to ctest with the label "rtl".
@@ -53,11 +54,20 @@ target_compile_options(gridrt_verilator PRIVATE -w -O2)
 target_link_libraries(gridrt_verilator PUBLIC Threads::Threads ZLIB::ZLIB)
 
 function(gridrt_verilated name)
-  cmake_parse_arguments(ARG "TRACE" "TOP" "PARAMETERS;DEFINES;FILES" ${ARGN})
+  cmake_parse_arguments(ARG "TRACE;FAST" "TOP;PREFIX" "PARAMETERS;DEFINES;FILES" ${ARGN})
   set(prefix V${ARG_TOP})
+  if(ARG_PREFIX)
+    set(prefix ${ARG_PREFIX})
+  endif()
   set(folder ${CMAKE_CURRENT_BINARY_DIR}/${name})
-  set(flags --top-module ${ARG_TOP} -Wall --assert -O3 --no-timing -DGRIDRT_ASSERT
-            ${GRIDRT_ASSERT_WARNINGS})
+  set(flags --top-module ${ARG_TOP} -Wall -O3 --no-timing)
+  set(optimise -O2)
+  if(ARG_FAST)
+    list(APPEND flags --x-assign fast --x-initial fast)
+    set(optimise -O3)
+  else()
+    list(APPEND flags --assert -DGRIDRT_ASSERT ${GRIDRT_ASSERT_WARNINGS})
+  endif()
   foreach(define IN LISTS ARG_DEFINES)
     list(APPEND flags -D${define})
   endforeach()
@@ -88,7 +98,7 @@ function(gridrt_verilated name)
   add_library(${name} STATIC ${folder}/${prefix}__fast.cpp ${folder}/${prefix}__slow.cpp)
   set_source_files_properties(${folder}/${prefix}__slow.cpp PROPERTIES COMPILE_OPTIONS -O0)
   target_include_directories(${name} SYSTEM PUBLIC ${folder}/model)
-  target_compile_options(${name} PRIVATE -w -O2)
+  target_compile_options(${name} PRIVATE -w ${optimise})
   list(TRANSFORM ARG_PARAMETERS PREPEND GRIDRT_RTL_)
   target_compile_definitions(${name} PUBLIC ${ARG_PARAMETERS})
   target_link_libraries(${name} PUBLIC gridrt_verilator)

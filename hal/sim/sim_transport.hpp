@@ -1,0 +1,57 @@
+// The link to a simulated board. Time on the board passes only while the host waits for it.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "hal/sim/board.hpp"
+#include "hal/transport.hpp"
+
+namespace gridrt {
+
+struct SimTransportOptions {
+  /// Clocks without a byte in either direction after which the board counts as silent, >= 1. The
+  /// longest that a board in order is silent is for a ray that meets every reference of it.
+  std::uint64_t silent_clocks = 250'000;
+  /// Times in a row that a silent board may be asked again, >= 1: more is an error.
+  int most_silences = 4;
+};
+
+/// Queues what the host sends and hands it to the board, a byte a clock, in receive() and before
+/// a report is read. Feature reports are words of the board's register windows (protocol.toml,
+/// [registers]).
+///
+/// Time limits are clocks, since the speed of a simulation says nothing about the board: a
+/// timeout given in milliseconds is not looked at. receive() returns 0 once the board is silent.
+/// Errors: kTimeout, with the clocks, if the board is silent and has not taken all bytes, if it is
+/// silent again and again, or if it does not serve its register bus.
+class SimTransport final : public Transport {
+ public:
+  explicit SimTransport(std::unique_ptr<SimBoard> board, SimTransportOptions options = {});
+
+  Result<void> send(std::span<const std::byte> bytes) override;
+  Result<std::size_t> receive(std::span<std::byte> out, std::chrono::milliseconds timeout) override;
+  Result<void> get_feature(std::uint8_t id, std::span<std::byte> body) override;
+  Result<void> set_feature(std::uint8_t id, std::span<const std::byte> body) override;
+
+  /// Clocks since power-up.
+  [[nodiscard]] std::uint64_t clocks() const { return board_->clocks(); }
+
+ private:
+  [[nodiscard]] std::span<const std::byte> queued() const;
+  void drop(std::size_t taken);
+  Result<void> deliver();
+  Result<std::uint32_t> access(RegisterAccess access);
+  [[nodiscard]] std::unexpected<Error> stuck() const;
+
+  std::unique_ptr<SimBoard> board_;
+  SimTransportOptions options_;
+  std::vector<std::byte> to_board_;  // sent by the host, not yet taken
+  std::size_t taken_ = 0;            // of to_board_
+  std::vector<std::byte> early_;     // came while a report was read
+  std::size_t given_ = 0;            // of early_
+  int silences_ = 0;
+};
+
+}  // namespace gridrt

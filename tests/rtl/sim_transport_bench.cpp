@@ -1,0 +1,149 @@
+// The link to a simulated board, against a board that says what it hears and may fall silent.
+#include <array>
+#include <filesystem>
+#include <random>
+#include <vector>
+
+#include <Vgridrt_sim_probe.h>
+#include <gtest/gtest.h>
+
+#include "hal/sim/sim_transport.hpp"
+#include "hal/sim/verilated_board.hpp"
+
+namespace gridrt {
+namespace {
+
+using Board = VerilatedBoard<Vgridrt_sim_probe>;
+constexpr std::chrono::milliseconds kAnyTime{1};
+
+SimTransport open(SimTransportOptions options = {.silent_clocks = 1000, .most_silences = 2}) {
+  auto board = std::make_unique<Board>();
+  board->power_up();
+  return SimTransport(std::move(board), options);
+}
+
+std::vector<std::byte> bytes(std::initializer_list<int> values) {
+  std::vector<std::byte> out;
+  for (const int v : values) out.push_back(static_cast<std::byte>(v));
+  return out;
+}
+
+std::vector<std::byte> receive_all(SimTransport& link, std::size_t piece = 1000) {
+  std::vector<std::byte> all;
+  std::vector<std::byte> buffer(piece);
+  for (;;) {
+    const auto got = link.receive(buffer, kAnyTime);
+    EXPECT_TRUE(got) << got.error().message;
+    if (!got || *got == 0) return all;
+    all.insert(all.end(), buffer.begin(), buffer.begin() + static_cast<std::ptrdiff_t>(*got));
+  }
+}
+
+TEST(SimTransport, BytesComeBackInOrderHoweverTheyAreCut) {
+  SimTransport link = open();
+  std::mt19937 random(1);
+  std::vector<std::byte> sent;
+  std::vector<std::byte> received;
+  for (int round = 0; round < 200; ++round) {
+    std::vector<std::byte> piece(random() % 300);
+    for (std::byte& b : piece) b = static_cast<std::byte>(random() % 0xFE);
+    ASSERT_TRUE(link.send(piece));
+    sent.insert(sent.end(), piece.begin(), piece.end());
+    if (random() % 3 == 0) {
+      const auto read = get_report<protocol::StatusReport>(link);  // bytes come meanwhile
+      ASSERT_TRUE(read) << read.error().message;
+      EXPECT_EQ(read->error_detail, ((sent.size() & 0xFFFFU) << 8U) + 0xC4U);
+    }
+    std::vector<std::byte> out(1 + random() % 100);
+    const auto got = link.receive(out, kAnyTime);
+    ASSERT_TRUE(got);
+    received.insert(received.end(), out.begin(), out.begin() + static_cast<std::ptrdiff_t>(*got));
+  }
+  const std::vector<std::byte> rest = receive_all(link);
+  received.insert(received.end(), rest.begin(), rest.end());
+  EXPECT_EQ(received, sent);
+  // A byte a clock, but for the silence that ends each wait.
+  EXPECT_LT(link.clocks(), 3 * sent.size() + 200 * 300);
+}
+
+TEST(SimTransport, ABoardThatTakesNoByteIsATimeoutInClocks) {
+  SimTransport link = open();
+  ASSERT_TRUE(link.send(bytes({1, 2, 0xFF, 3, 4})));
+  std::vector<std::byte> out(10);
+  EXPECT_EQ(link.receive(out, kAnyTime).value_or(0), 3U);
+  const auto got = link.receive(out, kAnyTime);
+  ASSERT_FALSE(got);
+  EXPECT_EQ(got.error().kind, ErrorKind::kTimeout);
+  EXPECT_NE(got.error().message.find("2 bytes"), std::string::npos) << got.error().message;
+  EXPECT_NE(got.error().message.find("1000 clocks"), std::string::npos) << got.error().message;
+  EXPECT_LT(link.clocks(), 5000U);
+}
+
+TEST(SimTransport, ABoardThatSaysNothingIsSilentThenATimeout) {
+  SimTransport link = open();
+  ASSERT_TRUE(link.send(bytes({0xFE})));
+  std::vector<std::byte> out(10);
+  EXPECT_EQ(link.receive(out, kAnyTime).value_or(0), 1U);  // its last word
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    ASSERT_TRUE(link.send(bytes({1, 2, 3})));
+    const auto got = link.receive(out, kAnyTime);
+    ASSERT_TRUE(got) << got.error().message;
+    EXPECT_EQ(*got, 0U);
+  }
+  const auto got = link.receive(out, kAnyTime);
+  ASSERT_FALSE(got);
+  EXPECT_EQ(got.error().kind, ErrorKind::kTimeout);
+  EXPECT_NE(got.error().message.find("1000 clocks"), std::string::npos) << got.error().message;
+}
+
+TEST(SimTransport, ResetBringsADeafBoardBack) {
+  SimTransport link = open();
+  ASSERT_TRUE(link.send(bytes({0xFF, 3, 4})));
+  EXPECT_FALSE(get_report<protocol::StatusReport>(link));
+  EXPECT_FALSE(set_report(link, protocol::ResetReport{.key = 1}));
+  ASSERT_TRUE(set_report(link, protocol::ResetReport{.key = protocol::kResetKey}));
+  ASSERT_TRUE(link.send(bytes({5})));
+  EXPECT_EQ(receive_all(link), bytes({5}));  // what was on its way is gone
+}
+
+TEST(SimTransport, ReportsAreTheWordsOfTheirWindows) {
+  SimTransport link = open();
+  const auto report = get_report<protocol::CapabilitiesReport>(link);
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report->max_payload, 0x84U);
+  EXPECT_EQ(report->max_blocks, 0x9CU);
+  std::array<std::byte, 5> part{};
+  ASSERT_TRUE(link.get_feature(protocol::CapabilitiesReport::kId, part));
+  EXPECT_EQ(part[4], std::byte{0x84});
+  std::array<std::byte, 63> whole{};
+  ASSERT_TRUE(link.get_feature(protocol::StatusReport::kId, whole));
+  EXPECT_EQ(whole[8], std::byte{0xC8});
+  EXPECT_EQ(whole[12], std::byte{0});
+  for (const int id : {0, 5, 16, 99}) {  // Reset cannot be read
+    const auto none = link.get_feature(static_cast<std::uint8_t>(id), whole);
+    ASSERT_FALSE(none);
+    EXPECT_EQ(none.error().kind, ErrorKind::kUnsupported);
+  }
+  EXPECT_EQ(link.set_feature(4, whole).error().kind, ErrorKind::kUnsupported);
+  EXPECT_EQ(link.set_feature(7, std::span(whole).first(7)).error().kind, ErrorKind::kProtocol);
+  EXPECT_TRUE(link.set_feature(7, whole));
+}
+
+TEST(SimTransport, WavesAreWritten) {
+  const auto path = std::filesystem::temp_directory_path() / "gridrt_sim_transport.fst";
+  {
+    auto board = std::make_unique<Board>();
+    ASSERT_TRUE(board->trace_to(path.string()));
+    board->power_up();
+    SimTransport link(std::move(board), {.silent_clocks = 100});
+    ASSERT_TRUE(link.send(bytes({1, 2, 3})));
+    EXPECT_EQ(receive_all(link).size(), 3U);
+  }
+  EXPECT_GT(std::filesystem::file_size(path), 300U);
+  std::filesystem::remove(path);
+  Board board;
+  EXPECT_FALSE(board.trace_to("/nowhere/at/all.fst"));
+}
+
+}  // namespace
+}  // namespace gridrt
