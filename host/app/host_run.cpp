@@ -10,7 +10,6 @@
 
 #include "host/app/npy.hpp"
 #include "host/driver/chunked_device.hpp"
-#include "host/pe/explain.hpp"
 #include "host/render/picture.hpp"
 
 namespace gridrt {
@@ -102,6 +101,7 @@ Result<void> HostRun::open() {
   device.schedule = options_.schedule;
   device.threads = options_.threads;
   device.rays_per_frame = options_.batch;
+  device.waves = options_.trace;
   if (auto read = read_pes_switches(device); !read) return read;
   auto opened = open_device(device);
   if (!opened) return std::unexpected(opened.error());
@@ -237,7 +237,7 @@ Result<void> HostRun::explain_pixel(const PinholeCamera& camera) {
                   segment.p0.z, segment.p1.x, segment.p1.y, segment.p1.z, segment.t0, segment.t1);
   const std::size_t chunks = prepared_.images->chunks.size();
   for (std::size_t i = 0; i < chunks; ++i) {
-    auto events = explain(prepared_.images->chunks[i].image, segment);
+    auto events = device_->explain(prepared_.images->chunks[i].image, segment);
     if (!events) return std::unexpected(events.error());
     if (chunks > 1) explanation_ += fmt::format("chunk {} of {}\n", i + 1, chunks);
     explanation_ += describe(*events);

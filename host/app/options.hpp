@@ -56,6 +56,7 @@ struct HostOptions {
   std::string hits;
   std::string stats;
   std::string lattice;
+  std::string trace;
   bool any_hit = false;
   std::optional<glm::ivec2> explain;
   ProgressMode progress = ProgressMode::kAuto;

@@ -31,12 +31,12 @@ constexpr const char* kExamples =
     "      where the time went, and the life of one pixel's ray\n";
 
 constexpr const char* kOutputNotes =
-    "At least one of -o, --hits, --lattice, --explain and --stats says what to do. With -o the\n"
-    "whole picture is computed; with --stats alone too, and thrown away; with --hits, --lattice "
-    "or\n"
-    "--explain alone only the primary rays are traced. An output file appears when it is "
-    "complete,\n"
-    "or not at all.\n";
+    "At least one of -o, --hits, --lattice, --explain, --stats and --trace says what to do. With "
+    "-o\n"
+    "the whole picture is computed; with --stats or --trace alone too, and thrown away; with\n"
+    "--hits, --lattice or --explain alone only the primary rays are traced. An output file "
+    "appears\n"
+    "when it is complete, or not at all; the waves of --trace grow while the simulation runs.\n";
 
 struct HostTexts {
   std::string threads, batch, size, samples, depth, eye, look, up, fov, explain;
@@ -62,6 +62,8 @@ void add_options(CLI::App& app, HostOptions& options, HostTexts& texts) {
       "what the answers were computed from: q, s, lo, P0, P1, bits, box, rays, vertices");
   add(kOutputs, "--explain", texts.explain, "X,Y",
       "tell the life of this pixel's first ray: voxels, PEs, tests, interrupts, feedback");
+  add(kOutputs, "--trace", options.trace, "OUT.fst",
+      "with --device sim: the waves of all signals while it runs; large, use a small --size");
   app.add_flag("--any-hit", options.any_hit,
                "with --hits: only whether a ray hits anything (id 0 or -1; t, u, v are NaN)")
       ->group(kOutputs);
@@ -165,10 +167,10 @@ Result<void> check_together(const HostTexts& texts, const HostOptions& options) 
     return refuse("no scene is given", "for example: gridrt-host builtin:teapot -o teapot.png");
   const bool makes_something = !options.picture.empty() || !options.hits.empty() ||
                                !options.stats.empty() || !options.lattice.empty() ||
-                               options.explain.has_value();
+                               options.explain.has_value() || !options.trace.empty();
   if (!makes_something) {
     return refuse("nothing to make",
-                  "add -o picture.png, or --hits, --lattice, --stats or --explain");
+                  "add -o picture.png, or --hits, --lattice, --stats, --explain or --trace");
   }
   if (!options.rays.empty()) {
     const std::array<std::pair<const char*, bool>, 9> camera = {{
@@ -198,11 +200,12 @@ Result<void> check_together(const HostTexts& texts, const HostOptions& options) 
     return refuse(fmt::format("--explain {}: the picture has {}x{} pixels", texts.explain,
                               options.size.x, options.size.y));
   }
-  const std::array<std::pair<const char*, const std::string*>, 4> outputs = {
+  const std::array<std::pair<const char*, const std::string*>, 5> outputs = {
       {{"-o", &options.picture},
        {"--hits", &options.hits},
        {"--stats", &options.stats},
-       {"--lattice", &options.lattice}}};
+       {"--lattice", &options.lattice},
+       {"--trace", &options.trace}}};
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     for (std::size_t j = i + 1; j < outputs.size(); ++j) {
       if (!outputs[i].second->empty() && *outputs[i].second == *outputs[j].second) {

@@ -132,11 +132,7 @@ Result<void> ChunkedDevice::visit(std::size_t chunk, Work& work) {
     work.places.push_back(i);
   }
   if (work.sent.empty()) return {};
-  if (loaded_ != chunk) {
-    loaded_.reset();
-    if (auto done = device_->load(c.image); !done) return done;
-    loaded_ = chunk;
-  }
+  if (auto done = load_chunk(chunk); !done) return done;
   work.answers.assign(work.sent.size(), Hit{});
   if (auto done = device_->trace(work.sent, work.query, work.answers); !done) return done;
   for (std::size_t i = 0; i < work.sent.size(); ++i) {
@@ -144,6 +140,24 @@ Result<void> ChunkedDevice::visit(std::size_t chunk, Work& work) {
     if (auto done = merge(work, i); !done) return done;
   }
   return {};
+}
+
+Result<void> ChunkedDevice::load_chunk(std::size_t chunk) {
+  if (loaded_ == chunk) return {};
+  loaded_.reset();
+  if (auto done = device_->load(images_->chunks[chunk].image); !done) return done;
+  loaded_ = chunk;
+  return {};
+}
+
+Result<std::vector<ExplainEvent>> ChunkedDevice::explain(const Image& image,
+                                                         const Segment& segment) {
+  const std::size_t chunks = images_ ? images_->chunks.size() : 0;
+  for (std::size_t i = 0; i < chunks; ++i) {
+    if (&images_->chunks[i].image != &image) continue;
+    if (auto done = load_chunk(i); !done) return std::unexpected(std::move(done.error()));
+  }
+  return device_->explain(image, segment);
 }
 
 /// Keeps the smaller key of the best so far and answer `i` of a visit. The quotient is computed

@@ -25,6 +25,7 @@ class ChunkedDevice final : public Device {
   Result<void> load(const Image& image) override;
   Result<void> trace(std::span<const Segment> segments, Query query, std::span<Hit> hits) override;
   Result<DeviceCounters> counters() override { return device_->counters(); }
+  Result<std::vector<ExplainEvent>> explain(const Image& image, const Segment& segment) override;
   [[nodiscard]] std::string name() const override { return device_->name(); }
   [[nodiscard]] const protocol::CapabilitiesReport& capabilities() const override {
     return device_->capabilities();
@@ -34,6 +35,7 @@ class ChunkedDevice final : public Device {
   struct Work;
   [[nodiscard]] std::vector<std::size_t> visiting_order(const Work& work) const;
   Result<void> visit(std::size_t chunk, Work& work);
+  Result<void> load_chunk(std::size_t chunk);
   Result<void> merge(Work& work, std::size_t i);
 
   std::unique_ptr<Device> device_;

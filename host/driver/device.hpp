@@ -14,6 +14,7 @@
 #include "hal/error.hpp"
 #include "host/grid/segment.hpp"
 #include "host/image/image.hpp"
+#include "host/pe/explain.hpp"
 
 namespace gridrt {
 
@@ -31,7 +32,7 @@ enum class Query { kClosestHit, kAnyHit };
 
 /// How to open a device and talk to it.
 struct DeviceOptions {
-  std::string name = "auto";  ///< auto, seq, omp; usb[:SERIAL], sim, mpi when built in
+  std::string name = "auto";  ///< auto, seq, omp, sim; usb[:SERIAL], mpi when built in
   std::string schedule = {};  ///< of software PEs: rays, pes or paper; empty: the
                               ///< device's own (omp: rays, mpi: pes)
   /// Of omp's schedule rays: plain (as seq), or a kind of vectors (host/pe/ray_stream.hpp) such as
@@ -42,6 +43,7 @@ struct DeviceOptions {
   int frames_in_flight = 4;            ///< >= 1
   int timeout_ms = 10000;              ///< longest wait for one answer
   bool spread_rays = true;  ///< to a clocked device: neighbours far apart (ray_order.hpp)
+  std::string waves = {};   ///< of sim: an FST file for all signals; empty: none
   /// Software PEs that say, and keep to, less than they could: for tests. The device `seq-board`
   /// is `seq` with board_capabilities().
   std::optional<protocol::CapabilitiesReport> capabilities = std::nullopt;
@@ -83,6 +85,12 @@ class Device {
 
   virtual Result<DeviceCounters> counters() = 0;
 
+  /// Traces one segment and tells its life. `image` is the loaded one, or a chunk of the loaded
+  /// scene. A board's event log tells what happened in it; for the others software PEs do it again.
+  virtual Result<std::vector<ExplainEvent>> explain(const Image& image, const Segment& segment) {
+    return gridrt::explain(image, segment);
+  }
+
   /// What the device says it can do.
   [[nodiscard]] virtual const protocol::CapabilitiesReport& capabilities() const = 0;
 
@@ -98,7 +106,8 @@ Result<std::unique_ptr<Device>> open_device(const DeviceOptions& options);
 std::string_view default_schedule(std::string_view device);
 
 /// Names that open_device accepts in this build; contract tests run on each. Left out: `auto`, and
-/// `seq-board`, which is there for tests.
+/// what is there for tests: `seq-board`, and `sim:BOARD` besides
+/// `sim`.
 std::vector<std::string> built_in_devices();
 
 }  // namespace gridrt

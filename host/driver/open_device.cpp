@@ -8,6 +8,7 @@
 #include "hal/loopback.hpp"
 #include "host/driver/device.hpp"
 #include "host/driver/session.hpp"
+#include "host/driver/sim_device.hpp"
 #include "host/pe/ray_stream.hpp"
 #include "host/pe/software_device.hpp"
 
@@ -30,7 +31,7 @@ Result<std::unique_ptr<Device>> open_software(const DeviceOptions& options,
 
 /// Devices that the plan names and this build does not have yet.
 bool is_planned(const std::string& name) {
-  return name == "sim" || name == "mpi" || name == "usb" || name.starts_with("usb:");
+  return name == "mpi" || name == "usb" || name.starts_with("usb:");
 }
 
 /// The schedule of a software device. Threads are for `omp` to choose.
@@ -73,24 +74,43 @@ std::string_view default_schedule(std::string_view device) {
   return device == "mpi" ? "pes" : "rays";
 }
 
-std::vector<std::string> built_in_devices() { return {"seq", "omp"}; }
+bool is_sim(std::string_view device) { return device == "sim" || device.starts_with("sim:"); }
+
+std::vector<std::string> built_in_devices() {
+  std::vector<std::string> names{"seq", "omp"};
+  if (has_sim()) names.emplace_back("sim");
+  return names;
+}
 
 Result<std::unique_ptr<Device>> open_device(const DeviceOptions& options) {
   DeviceOptions chosen = options;
   if (chosen.name == "auto") chosen.name = "omp";
+  if (!chosen.waves.empty() && !is_sim(chosen.name)) {
+    return fail(ErrorKind::kUsage, fmt::format("device '{}' has no waves to trace", chosen.name),
+                "use --device sim, or leave --trace out");
+  }
   const std::string available = fmt::format("{}", fmt::join(built_in_devices(), ", "));
   if (is_planned(chosen.name)) {
     return fail(ErrorKind::kUnsupported,
                 fmt::format("device '{}' is not built in yet", chosen.name),
                 fmt::format("use one of: auto, {}", available));
   }
-  if (std::ranges::count(built_in_devices(), chosen.name) == 0 && chosen.name != kBoardInSoftware) {
+  if (std::ranges::count(built_in_devices(), chosen.name) == 0 && !is_sim(chosen.name) &&
+      chosen.name != kBoardInSoftware) {
     return fail(ErrorKind::kUsage, fmt::format("device '{}' is not known", chosen.name),
                 fmt::format("use one of: auto, {}", available));
   }
   if (chosen.threads < 0) {
     return fail(ErrorKind::kUsage, fmt::format("{} threads asked for", chosen.threads),
                 "use 0 for all cores, or a positive number");
+  }
+  if (is_sim(chosen.name)) {
+    if (!chosen.schedule.empty()) {
+      return fail(ErrorKind::kUsage,
+                  fmt::format("device '{}' has no schedule '{}'", chosen.name, chosen.schedule),
+                  "schedules are for seq, omp and mpi; leave --schedule out");
+    }
+    return open_sim(chosen);
   }
   const Result<ScheduleOptions> schedule = choose_schedule(chosen);
   if (!schedule) return std::unexpected(schedule.error());

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "host/driver/ray_log.hpp"
 #include "host/driver/ray_order.hpp"
 #include "host/driver/ray_records.hpp"
 #include "host/driver/upload.hpp"
@@ -194,6 +195,36 @@ Result<void> Session::send_again(Batch& batch) {
   ++batch.attempts;
   ++retries_;
   return connection_.send(batch.frame);
+}
+
+Result<std::vector<ExplainEvent>> Session::explain(const Image& image, const Segment& segment) {
+  Transport& link = connection_.transport();
+  const auto before = get_report<protocol::ControlReport>(link);
+  // Who has no settings has no log.
+  if (!before && before.error().kind == ErrorKind::kUnsupported) {
+    return Device::explain(image, segment);
+  }
+  if (!before) return std::unexpected(before.error());
+  protocol::ControlReport control = *before;
+  control.log = 1;
+  if (auto on = set_report(link, control); !on) return std::unexpected(std::move(on.error()));
+  Hit hit;
+  auto traced = trace(std::span(&segment, 1), Query::kClosestHit, std::span(&hit, 1));
+  if (!traced) return std::unexpected(std::move(traced.error()));
+  std::vector<std::uint32_t> words;
+  bool lost = false;
+  for (;;) {
+    const auto log = get_report<protocol::LogReport>(link);
+    if (!log) return std::unexpected(log.error());
+    lost = lost || log->overflow != 0;
+    if (log->count == 0) break;
+    const std::size_t count = std::min<std::size_t>(log->count, log->words.size());
+    words.insert(words.end(), log->words.begin(),
+                 log->words.begin() + static_cast<std::ptrdiff_t>(count));
+  }
+  control.log = 0;
+  if (auto off = set_report(link, control); !off) return std::unexpected(std::move(off.error()));
+  return read_ray_log(image, segment, words, lost);
 }
 
 Result<DeviceCounters> Session::counters() {

@@ -25,6 +25,7 @@ class Session final : public Device {
   Result<void> load(const Image& image) override;
   Result<void> trace(std::span<const Segment> segments, Query query, std::span<Hit> hits) override;
   Result<DeviceCounters> counters() override;
+  Result<std::vector<ExplainEvent>> explain(const Image& image, const Segment& segment) override;
   [[nodiscard]] std::string name() const override { return name_; }
   [[nodiscard]] const protocol::CapabilitiesReport& capabilities() const override {
     return capabilities_;

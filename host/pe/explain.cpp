@@ -22,17 +22,20 @@ class Recorder final : public EngineObserver {
       event.pe = static_cast<int>(cell->pe);
       event.count = cell->count;
     }
+    pe_ = event.pe;
     events_.push_back(event);
   }
   void on_masked(std::uint32_t local_id) override {
     ExplainEvent event;
     event.kind = ExplainEvent::Kind::kMasked;
+    event.pe = pe_;
     event.id = global_ids_[local_id];
     events_.push_back(event);
   }
   void on_test(std::uint32_t local_id, const std::optional<HitKey>& hit) override {
     ExplainEvent event;
     event.kind = hit ? ExplainEvent::Kind::kHit : ExplainEvent::Kind::kTest;
+    event.pe = pe_;
     event.id = global_ids_[local_id];
     if (hit) event.quotient = hit->quotient;
     events_.push_back(event);
@@ -56,6 +59,7 @@ class Recorder final : public EngineObserver {
 
   std::vector<ExplainEvent>& events_;
   const std::vector<std::uint32_t>& global_ids_;
+  int pe_ = -1;  // that owns the voxel at hand
 };
 
 std::span<const std::byte> bytes_of(const Image& image, SectionKind kind, int pe = 0) {
@@ -125,13 +129,14 @@ std::string describe(const std::vector<ExplainEvent>& events) {
         }
         break;
       case ExplainEvent::Kind::kMasked:
-        fmt::format_to(out, "  masked    triangle {}\n", e.id);
+        fmt::format_to(out, "  masked    PE {}  triangle {}\n", e.pe, e.id);
         break;
       case ExplainEvent::Kind::kTest:
-        fmt::format_to(out, "  test      triangle {}  no hit\n", e.id);
+        fmt::format_to(out, "  test      PE {}  triangle {}  no hit\n", e.pe, e.id);
         break;
       case ExplainEvent::Kind::kHit:
-        fmt::format_to(out, "  test      triangle {}  hit, key {}\n", e.id, e.quotient);
+        fmt::format_to(out, "  test      PE {}  triangle {}  hit, key {}\n", e.pe, e.id,
+                       e.quotient);
         break;
       case ExplainEvent::Kind::kCancel:
         fmt::format_to(out,
@@ -145,6 +150,35 @@ std::string describe(const std::vector<ExplainEvent>& events) {
         } else {
           fmt::format_to(out, "commit      triangle {}, key {}\n", e.id, e.quotient);
         }
+        break;
+      case ExplainEvent::Kind::kStep:
+        fmt::format_to(out, "step        block {},{},{}: {} voxels to test, then {} blocks ahead\n",
+                       e.voxel.x, e.voxel.y, e.voxel.z, e.count, e.jump);
+        break;
+      case ExplainEvent::Kind::kMeet:
+        fmt::format_to(out, "  test      PE {}  triangle {}  hit\n", e.pe, e.id);
+        break;
+      case ExplainEvent::Kind::kFeedback:
+        fmt::format_to(out, "feedback    triangle {}, key {}\n", e.id, e.quotient);
+        break;
+      case ExplainEvent::Kind::kLimit:
+        fmt::format_to(out,
+                       "interrupt   cancels voxels entered beyond {} lattice steps of the dominant "
+                       "axis\n",
+                       e.enter);
+        break;
+      case ExplainEvent::Kind::kDone:
+        fmt::format_to(out, "  through   PE {}  a voxel without a hit\n", e.pe);
+        break;
+      case ExplainEvent::Kind::kCancelled:
+        if (e.pe < 0) {
+          fmt::format_to(out, "  cancelled a voxel on its way to a PE\n");
+        } else {
+          fmt::format_to(out, "  cancelled PE {}  a voxel\n", e.pe);
+        }
+        break;
+      case ExplainEvent::Kind::kLost:
+        fmt::format_to(out, "the log was full: steps are missing\n");
         break;
     }
   }

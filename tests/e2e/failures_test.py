@@ -29,12 +29,17 @@ class Usage(ProgramTest):
         self.assertEqual(self.entries(), [])
 
     def test_what_is_not_built_in_is_5(self):
-        for words in (["--device", "sim"], ["--device", "usb"], ["--device", "usb:0001"],
+        for words in (["--device", "usb"], ["--device", "usb:0001"],
                       ["--device", "mpi"], ["--exact"]):
             with self.subTest(words=words):
                 done = self.host("builtin:teapot", "-o", "a.png", *words, code=5)
                 self.assertIn("not built in yet", done.stderr)
         self.image("--firmware", "f.bin", code=5)
+        self.assertEqual(self.entries(), [])
+
+    def test_waves_are_those_of_a_simulation(self):
+        done = self.host("builtin:cube", "--device", "seq", "--trace", "w.fst", code=2)
+        self.assertIn("--device sim", done.stderr)
         self.assertEqual(self.entries(), [])
 
     def test_help_version_and_devices(self):
@@ -44,7 +49,7 @@ class Usage(ProgramTest):
         self.assertRegex(self.image("--version").stdout, r"^gridrt-image \d+\.\d+\.\d+ ")
         devices = self.host("--list-devices").stdout
         self.assertRegex(devices, r"(?m)^seq ")
-        self.assertRegex(devices, r"(?m)^sim .*not built in yet")
+        self.assertRegex(devices, r"(?m)^usb .*not built in yet")
 
 
 class Input(ProgramTest):
