@@ -5,12 +5,18 @@ add_library(gridrt_bench STATIC ${CMAKE_CURRENT_LIST_DIR}/bench.cpp
 target_link_libraries(gridrt_bench PUBLIC gridrt_adversarial gridrt_driver
                       PRIVATE gridrt_flags fmt::fmt)
 
-# gridrt_cases(NAME sources...): one program of cases.
+# gridrt_cases(NAME sources...): one program of cases; on the simulated board it runs once more,
+# with a part of the rays (all of them: GRIDRT_DEVICES=sim build/bin/adversarial_NAME).
 function(gridrt_cases name)
   add_executable(adversarial_${name} ${ARGN})
   target_link_libraries(adversarial_${name} PRIVATE gridrt_bench gridrt_flags GTest::gtest_main)
   gtest_discover_tests(adversarial_${name} DISCOVERY_TIMEOUT 60
                        PROPERTIES LABELS adversarial TIMEOUT 900)
+  if(TARGET gridrt_sim)
+    add_test(NAME sim.${name} COMMAND adversarial_${name})
+    set_tests_properties(sim.${name} PROPERTIES LABELS "adversarial;rtl" TIMEOUT 900
+      ENVIRONMENT "GRIDRT_DEVICES=sim;GRIDRT_FRACTION=1/64")
+  endif()
 endfunction()
 
 gridrt_cases(sheets sheets_test.cpp)

@@ -31,9 +31,11 @@ class Demo(unittest.TestCase):
         return json.loads(statistics.read_text(encoding="utf-8"))
 
     def test_renders_the_built_in_scene(self):
-        statistics = self.check_outputs(run(self.folder), "demo")
+        done = run(self.folder)
+        statistics = self.check_outputs(done, "demo")
         for kind in ("primary", "shadow", "mirror", "refraction"):
             self.assertGreater(statistics["rays"][kind], 0, kind)
+        self.assertRegex(done.stdout, r"the same bytes on the simulated board.*\d clocks, \d")
 
     def test_renders_a_file_named_from_where_the_caller_stands(self):
         (self.folder / "one triangle.obj").write_text(TRIANGLE, encoding="utf-8")

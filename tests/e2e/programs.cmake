@@ -1,5 +1,9 @@
 # The programs from outside: command lines, files, exit codes.
-foreach(name IN ITEMS pictures rays failures chunks)
+set(programs pictures rays failures chunks)
+if(TARGET gridrt_sim)
+  list(APPEND programs sim)
+endif()
+foreach(name IN LISTS programs)
   add_test(NAME e2e.${name} COMMAND /usr/bin/python3 -B ${CMAKE_CURRENT_LIST_DIR}/${name}_test.py)
   set_tests_properties(e2e.${name} PROPERTIES
     LABELS e2e TIMEOUT 600
