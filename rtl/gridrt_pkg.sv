@@ -90,8 +90,8 @@ package gridrt_pkg;
     logic       ray;  // a ray has been committed
     logic [2:0] steps;  // traversal steps
     logic [2:0] tests;  // exact tests
-    logic [3:0] masked;  // references left out by the half-voxel mask
-    logic [3:0] interrupts;  // tasks and voxels cancelled by an earlier hit
+    logic [4:0] masked;  // references left out by the half-voxel mask
+    logic [2:0] interrupts;  // tasks and voxels cancelled by an earlier hit
     logic       feedback_wait;  // a hit that waited for earlier voxels has been committed
     logic       in_flight;  // at least one ray is in the engine
     // Where clocks went, while in_flight:

@@ -21,6 +21,9 @@ module gridrt_ram_tdp #(
   localparam int unsigned BANKS = (DEPTH + BANK - 1) / BANK;
   localparam int unsigned LOW_W = (BANK > 1) ? $clog2(BANK) : 1;
 
+  localparam int unsigned SELECT_W = (BANKS > 1) ? $clog2(BANKS) : 1;
+  localparam int unsigned CHOICES = 1 << SELECT_W;
+
   if (WIDTH < 1 || DEPTH < 1) begin : gen_illegal
     $error("gridrt_ram_tdp: WIDTH and DEPTH must be positive");
   end
@@ -56,19 +59,19 @@ module gridrt_ram_tdp #(
   end
 
   if (BANKS > 1) begin : gen_banks
-    logic [ADDRESS_W-1:0] a_selected, b_selected;
+    // As many as the select can name, so that the choice is a plain tree of multiplexers.
+    logic [SELECT_W-1:0] a_selected, b_selected;
+    logic [CHOICES*WIDTH-1:0] a_choice, b_choice;
     always_ff @(posedge clk_i) begin
-      if (a_enable_i) a_selected <= a_address_i >> LOW_W;
-      if (b_enable_i) b_selected <= b_address_i >> LOW_W;
+      if (a_enable_i) a_selected <= SELECT_W'(a_address_i >> LOW_W);
+      if (b_enable_i) b_selected <= SELECT_W'(b_address_i >> LOW_W);
     end
-    always_comb begin
-      a_now = a_bank[0];
-      b_now = b_bank[0];
-      for (int unsigned i = 1; i < BANKS; i++) begin
-        if (a_selected == ADDRESS_W'(i)) a_now = a_bank[i];
-        if (b_selected == ADDRESS_W'(i)) b_now = b_bank[i];
-      end
+    for (genvar i = 0; i < CHOICES; i++) begin : gen_choice
+      assign a_choice[i*WIDTH+:WIDTH] = a_bank[(i < BANKS) ? i : BANKS - 1];
+      assign b_choice[i*WIDTH+:WIDTH] = b_bank[(i < BANKS) ? i : BANKS - 1];
     end
+    assign a_now = a_choice[32'(a_selected)*WIDTH+:WIDTH];
+    assign b_now = b_choice[32'(b_selected)*WIDTH+:WIDTH];
   end else begin : gen_single
     assign a_now = a_bank[0];
     assign b_now = b_bank[0];

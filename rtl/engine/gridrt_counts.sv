@@ -22,7 +22,7 @@ module gridrt_counts #(
     input  logic                 [SLOTS-1:0]      few_i,
     input  logic                 [EXPS-1:0]       expand_drop_i,
     input  logic                 [PES-1:0]        test_i,
-    input  logic                 [PES-1:0][1:0]   masked_i,
+    input  logic                 [PES-1:0][2:0]   masked_i,
     input  logic                 [PES-1:0]        cancelled_i,
     input  logic                 [PES-1:0]        queue_full_i,
     input  logic                 [PES-1:0]        pe_busy_i,
@@ -64,12 +64,12 @@ module gridrt_counts #(
       now.traversal_idle = now.traversal_idle + 3'(walks[t] && !may_step[t]);
     end
     for (int unsigned e = 0; e < EXPS; e++) begin
-      now.interrupts = now.interrupts + 4'(expand_drop_i[e]);
+      now.interrupts = now.interrupts + 3'(expand_drop_i[e]);
     end
     for (int unsigned p = 0; p < PES; p++) begin
       now.tests = now.tests + 3'(test_i[p]);
-      now.masked = now.masked + 4'(masked_i[p]);
-      now.interrupts = now.interrupts + 4'(cancelled_i[p]);
+      now.masked = now.masked + 5'(masked_i[p]);
+      now.interrupts = now.interrupts + 3'(cancelled_i[p]);
       now.queue_full = now.queue_full + 3'(queue_full_i[p]);
       now.pe_idle = now.pe_idle + 3'(in_flight && !pe_busy_i[p]);
       now.divider_busy = now.divider_busy + 3'(divider_wait_i[p]);

@@ -12,6 +12,7 @@ module gridrt_best #(
     input  logic                   [PES-1:0]         event_valid_i,
     output logic                   [PES-1:0]         event_ready_o,
     input  logic                   [PES-1:0][gridrt_pkg::EVENT_W-1:0] event_i,  // event_t
+    input  logic                   [PES-1:0]         dropped_i,  // the PE ends another task now
     output logic                   [PES-1:0][gridrt_pkg::SLOT_EVENT_W-1:0] end_o,  // tasks that end now
     output gridrt_pkg::interrupt_t                   interrupt_o,
     output gridrt_pkg::event_t                       hit_o,  // the hit that is compared now
@@ -49,8 +50,10 @@ module gridrt_best #(
   for (genvar p = 0; p < PES; p++) begin : gen_event
     gridrt_pkg::event_t one;
     assign one = event_i[p];
-    assign request[p] = event_valid_i[p] && one.hit;
-    assign event_ready_o[p] = !one.hit || grant[p];
+    logic may;
+    assign may = !(dropped_i[p] && one.last);
+    assign request[p] = event_valid_i[p] && one.hit && may;
+    assign event_ready_o[p] = may && (!one.hit || grant[p]);
     assign end_o[p] = {event_valid_i[p] && event_ready_o[p] && one.last, one.slot};
     logic unused;
     assign unused = &{1'b0, one.quotient, one.id, one.limit};

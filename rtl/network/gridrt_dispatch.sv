@@ -4,7 +4,7 @@
 module gridrt_dispatch #(
     parameter int unsigned EXPS  = 2,
     parameter int unsigned PES   = 4,  // 1, 2 or 4
-    parameter int unsigned DEPTH = 2,  // tasks between an expander and a PE
+    parameter int unsigned DEPTH = 16,  // tasks between an expander and a PE
     localparam int unsigned PE_W = gridrt_pkg::PE_W,
     localparam int unsigned TASK_W = gridrt_pkg::TASK_W
 ) (

@@ -55,7 +55,8 @@ module gridrt_feedback #(
   logic [PES-1:0][gridrt_pkg::SLOT_EVENT_W-1:0] event_end;
   logic [gridrt_pkg::ID_W-1:0] best_id;
 
-  assign ray_ready_o = free_valid && room_i && (start_ready_i & unit) != '0;
+  // Blocks write a slot's limit both when it gets a ray and when a hit lowers it.
+  assign ray_ready_o = free_valid && room_i && (start_ready_i & unit) != '0 && !interrupt_o.valid;
   assign take = ray_valid_i && ray_ready_o;
   assign alloc_o.valid = take;
   assign alloc_o.slot = free_slot;
@@ -76,6 +77,15 @@ module gridrt_feedback #(
       .free_slot_i(pick_slot)
   );
 
+  // A PE ends one task a clock: a drop goes before an event that ends one.
+  logic [PES-1:0] pe_dropped;
+  logic [EXPS+PES-1:0][gridrt_pkg::SLOT_EVENT_W-1:0] ends;
+  assign ends[EXPS-1:0] = drop_i[EXPS-1:0];
+  for (genvar p = 0; p < PES; p++) begin : gen_end
+    assign pe_dropped[p] = drop_i[EXPS+p][SLOT_W];
+    assign ends[EXPS+p] = drop_i[EXPS+p][SLOT_W] ? drop_i[EXPS+p] : event_end[p];
+  end
+
   gridrt_best #(
       .SLOTS(SLOTS),
       .PES(PES),
@@ -87,6 +97,7 @@ module gridrt_feedback #(
       .event_valid_i,
       .event_ready_o,
       .event_i,
+      .dropped_i(pe_dropped),
       .end_o(event_end),
       .interrupt_o,
       .hit_o,
@@ -99,7 +110,7 @@ module gridrt_feedback #(
   gridrt_pending #(
       .SLOTS(SLOTS),
       .TUS(TUS),
-      .ENDS(EXPS + 2 * PES),
+      .ENDS(EXPS + PES),
       .AHEAD(AHEAD)
   ) u_pending (
       .clk_i,
@@ -107,7 +118,7 @@ module gridrt_feedback #(
       .inc_valid_i,
       .inc_slot_i,
       .inc_count_i,
-      .end_i({event_end, drop_i}),
+      .end_i(ends),
       .few_o,
       .none_o(none),
       .many_o(many)

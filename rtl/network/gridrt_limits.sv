@@ -1,5 +1,5 @@
 // The limits of the rays in flight, as one block keeps them for itself. A ray starts without a
-// limit (all ones); each interrupt lowers it.
+// limit (all ones); each interrupt lowers it. The two never come in one clock (gridrt_feedback).
 module gridrt_limits #(
     parameter int unsigned SLOTS = 48
 ) (
@@ -12,31 +12,24 @@ module gridrt_limits #(
 );
   localparam int unsigned INDEX_W = (SLOTS > 1) ? $clog2(SLOTS) : 1;
 
-  logic [SLOTS-1:0] has;
-  logic [gridrt_pkg::DIST_W-1:0] kept;
-
   gridrt_lutram #(
       .WIDTH(gridrt_pkg::DIST_W),
       .DEPTH(SLOTS)
   ) u_limits (
       .clk_i,
-      .write_i(interrupt_i.valid),
-      .write_address_i(INDEX_W'(interrupt_i.slot)),
-      .write_data_i(interrupt_i.limit),
+      .write_i(interrupt_i.valid || alloc_i.valid),
+      .write_address_i(INDEX_W'(interrupt_i.valid ? interrupt_i.slot : alloc_i.slot)),
+      .write_data_i(interrupt_i.valid ? interrupt_i.limit : '1),
       .read_address_i(INDEX_W'(slot_i)),
-      .read_data_o(kept)
+      .read_data_o(limit_o)
   );
 
-  always_ff @(posedge clk_i or negedge rst_ni) begin
-    if (!rst_ni) begin
-      has <= '0;
-    end else begin
-      if (alloc_i.valid) has[INDEX_W'(alloc_i.slot)] <= 1'b0;
-      if (interrupt_i.valid) has[INDEX_W'(interrupt_i.slot)] <= 1'b1;
-    end
-  end
-  assign limit_o = has[INDEX_W'(slot_i)] ? kept : '1;
+  logic unused;
+  assign unused = &{1'b0, rst_ni, slot_i, alloc_i, interrupt_i};
 
-  logic unused;  // with few slots
-  assign unused = (^alloc_i.slot) ^ (^interrupt_i.slot) ^ (^slot_i);
+`ifdef GRIDRT_ASSERT
+  always_ff @(posedge clk_i) begin
+    if (rst_ni) assert (!(alloc_i.valid && interrupt_i.valid));
+  end
+`endif
 endmodule

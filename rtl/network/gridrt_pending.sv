@@ -4,7 +4,7 @@
 module gridrt_pending #(
     parameter int unsigned SLOTS = 48,
     parameter int unsigned TUS   = 4,
-    parameter int unsigned ENDS  = 10,  // ports that end tasks, at most 12
+    parameter int unsigned ENDS  = 6,  // ports that end tasks, at most 6
     parameter int unsigned AHEAD = 4    // 1, 2, 4, 8 or 16
 ) (
     input  logic clk_i,
@@ -21,33 +21,31 @@ module gridrt_pending #(
   localparam int unsigned PLANES = 5;  // at most 2 AHEAD - 1 + 8 even if a step was begun too early
   localparam int unsigned AHEAD_LOG = $clog2(AHEAD);
 
-  if (ENDS < 1 || ENDS > 12) begin : gen_illegal_ends
-    $error("gridrt_pending: ENDS must be 1 to 12");
+  if (ENDS < 1 || ENDS > 6) begin : gen_illegal_ends
+    $error("gridrt_pending: ENDS must be 1 to 6");
   end
   if (AHEAD < 1 || AHEAD > 16 || (1 << AHEAD_LOG) != AHEAD) begin : gen_illegal_ahead
     $error("gridrt_pending: AHEAD must be 1, 2, 4, 8 or 16");
   end
 
   logic [PLANES-1:0][SLOTS-1:0] count, count_next;
-  logic [3:0][SLOTS-1:0] more, ended, ended_q;
+  logic [3:0][SLOTS-1:0] more;
+  logic [2:0][SLOTS-1:0] ended, ended_q;
 
-  // What is added, by slot.
-  always_comb begin
-    more = '0;
-    for (int unsigned t = 0; t < TUS; t++) begin
-      if (inc_valid_i[t]) begin
-        for (int unsigned b = 0; b < 4; b++) begin
-          if (inc_count_i[t][b]) more[b] = more[b] | (SLOTS'(1) << inc_slot_i[t]);
-        end
-      end
+  // What is added, by slot. Slot s belongs to unit s modulo TUS.
+  for (genvar s = 0; s < SLOTS; s++) begin : gen_more
+    logic mine;
+    assign mine = inc_valid_i[s%TUS] && inc_slot_i[s%TUS] == gridrt_pkg::SLOT_W'(s);
+    for (genvar b = 0; b < 4; b++) begin : gen_bit
+      assign more[b][s] = mine && inc_count_i[s%TUS][b];
     end
   end
 
-  // How many ports end a task of the slot: carry-save adders over twelve one-hot vectors.
+  // How many ports end a task of the slot: carry-save adders over six one-hot vectors.
   gridrt_pkg::slot_event_t ends;
-  logic [11:0][SLOTS-1:0] one;
-  logic [3:0][SLOTS-1:0] sum, carry;
-  logic [SLOTS-1:0] s1, c1, c2, d1, c3, c4, d2, d3;
+  logic [5:0][SLOTS-1:0] one;
+  logic [1:0][SLOTS-1:0] sum, carry;
+  logic [SLOTS-1:0] both;
   always_comb begin
     one = '0;
     ends = '0;
@@ -55,22 +53,14 @@ module gridrt_pending #(
       ends = end_i[e];
       if (ends.valid) one[e] = SLOTS'(1) << ends.slot;
     end
-    for (int unsigned i = 0; i < 4; i++) begin
+    for (int unsigned i = 0; i < 2; i++) begin
       sum[i] = one[3*i] ^ one[3*i+1] ^ one[3*i+2];
       carry[i] = (one[3*i] & one[3*i+1]) | (one[3*i] & one[3*i+2]) | (one[3*i+1] & one[3*i+2]);
     end
-    s1 = sum[0] ^ sum[1] ^ sum[2];
-    c1 = (sum[0] & sum[1]) | (sum[0] & sum[2]) | (sum[1] & sum[2]);
-    c2 = carry[0] ^ carry[1] ^ carry[2];
-    d1 = (carry[0] & carry[1]) | (carry[0] & carry[2]) | (carry[1] & carry[2]);
-    ended[0] = s1 ^ sum[3];
-    c3 = s1 & sum[3];
-    c4 = c1 ^ c2 ^ carry[3];
-    d2 = (c1 & c2) | (c1 & carry[3]) | (c2 & carry[3]);
-    ended[1] = c3 ^ c4;
-    d3 = c3 & c4;
-    ended[2] = d1 ^ d2 ^ d3;
-    ended[3] = (d1 & d2) | (d1 & d3) | (d2 & d3);
+    both = sum[0] & sum[1];
+    ended[0] = sum[0] ^ sum[1];
+    ended[1] = carry[0] ^ carry[1] ^ both;
+    ended[2] = (carry[0] & carry[1]) | (carry[0] & both) | (carry[1] & both);
   end
 
   // count + more - ended: carry-save, then a ripple over the planes.
@@ -80,7 +70,7 @@ module gridrt_pending #(
     twice  = '1;  // minus x is not x plus one
     ripple = '0;
     for (int unsigned b = 0; b < PLANES; b++) begin
-      minus[b] = (b < 4) ? ~ended_q[b%4] : '1;
+      minus[b] = (b < 3) ? ~ended_q[b%3] : '1;
       plus[b] = (b < 4) ? more[b%4] : '0;
       half[b] = count[b] ^ minus[b] ^ plus[b];
       count_next[b] = half[b] ^ twice ^ ripple;

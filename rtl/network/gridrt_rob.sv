@@ -1,5 +1,7 @@
 // Puts answers into the order of the rays: a ray reserves an entry when it gets its slot, its
-// answer is written there once, and entries leave in order.
+// answer is written there once, and entries leave in order. Beside an answer lies the parity of the
+// round through the memory in which it was written, so that the head knows an answer of this round
+// from one of the round before. After reset the memory is filled first.
 module gridrt_rob #(
     parameter int unsigned ROB = 128,  // entries, a power of two
     localparam int unsigned ENTRY_W = $clog2(ROB)
@@ -24,56 +26,67 @@ module gridrt_rob #(
     $error("gridrt_rob: ROB must be a power of two");
   end
 
-  logic [ROB-1:0] answered;
-  logic [ENTRY_W-1:0] head;
+  // The upper bit is the parity of the round.
+  logic [ENTRY_W:0] head, tail, fill;
   logic [ENTRY_W:0] reserved;
-  logic [ENTRY_W-1:0] tail;
-  logic [ID_W:0] head_data;
-  logic leave;
+  logic [ID_W+1:0] head_data;
+  logic leave, filling, write_round;
+  assign filling = !fill[ENTRY_W];
+  // Entries below the tail's are of its round, the others of the one before.
+  assign write_round = (write_entry_i < tail[ENTRY_W-1:0]) ? tail[ENTRY_W] : !tail[ENTRY_W];
 
   gridrt_lutram #(
-      .WIDTH(ID_W + 1),
+      .WIDTH(ID_W + 2),
       .DEPTH(ROB)
   ) u_answers (
       .clk_i,
-      .write_i,
-      .write_address_i(write_entry_i),
-      .write_data_i({write_hit_i, write_id_i}),
-      .read_address_i(head),
+      .write_i(write_i || filling),
+      .write_address_i(filling ? fill[ENTRY_W-1:0] : write_entry_i),
+      .write_data_i({!filling && write_round, write_hit_i, write_id_i}),
+      .read_address_i(head[ENTRY_W-1:0]),
       .read_data_o(head_data)
   );
 
-  assign room_o = reserved != (ENTRY_W + 1)'(ROB);
-  assign entry_o = tail;
-  assign leave = answered[head] && (!hit_valid_o || hit_ready_i);
+  assign room_o = reserved != (ENTRY_W + 1)'(ROB) && !filling;
+  assign entry_o = tail[ENTRY_W-1:0];
+  // Rounds begin with 1: the memory was filled with 0.
+  assign leave = !filling && head_data[ID_W+1] == head[ENTRY_W] && (!hit_valid_o || hit_ready_i);
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
-      answered <= '0;
-      head <= '0;
-      tail <= '0;
+      fill <= '0;
+      head <= {1'b1, ENTRY_W'(0)};
+      tail <= {1'b1, ENTRY_W'(0)};
       reserved <= '0;
       hit_valid_o <= 1'b0;
       hit_o <= 1'b0;
       id_o <= '0;
     end else begin
-      if (write_i) answered[write_entry_i] <= 1'b1;
+      if (filling) fill <= fill + 1'b1;
       if (reserve_i) tail <= tail + 1'b1;
       if (reserve_i && !leave) reserved <= reserved + 1'b1;
       if (leave && !reserve_i) reserved <= reserved - 1'b1;
       if (hit_ready_i) hit_valid_o <= 1'b0;
       if (leave) begin
-        answered[head] <= 1'b0;
         head <= head + 1'b1;
         hit_valid_o <= 1'b1;
-        {hit_o, id_o} <= head_data;
+        {hit_o, id_o} <= head_data[ID_W:0];
       end
     end
   end
 
 `ifdef GRIDRT_ASSERT
+  logic [ROB-1:0] answered;
   logic [ENTRY_W-1:0] age;
-  assign age = write_entry_i - head;
+  assign age = write_entry_i - head[ENTRY_W-1:0];
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      answered <= '0;
+    end else begin
+      if (write_i) answered[write_entry_i] <= 1'b1;
+      if (leave) answered[head[ENTRY_W-1:0]] <= 1'b0;
+    end
+  end
   always_ff @(posedge clk_i) begin
     if (rst_ni) begin
       assert (reserved <= (ENTRY_W + 1)'(ROB));
@@ -81,6 +94,7 @@ module gridrt_rob #(
       // A ray commits once, into an entry that it holds.
       assert (!(write_i && answered[write_entry_i]));
       assert (!(write_i && {1'b0, age} >= reserved));
+      assert (!(leave && !answered[head[ENTRY_W-1:0]]));
     end
   end
 `endif

@@ -10,7 +10,7 @@ module gridrt_pe #(
     parameter int unsigned B = 17,
     parameter int unsigned SLOTS = 48,
     parameter int unsigned QUEUE = 16,
-    parameter int unsigned REFS = 11264,
+    parameter int unsigned REFS = 10240,
     parameter int unsigned TRIS = 4096,
     parameter int unsigned VERTS = 2560,
     parameter bit MASK = 1'b1,
@@ -38,7 +38,7 @@ module gridrt_pe #(
     output gridrt_pkg::slot_event_t       drop_o,             // a task has ended without an event
     output logic                          drop_cancelled_o,   // because of an earlier hit
     output logic                          test_o,             // counters: a test starts
-    output logic [1:0]                    masked_o,           // references left out
+    output logic [2:0]                    masked_o,           // references left out
     output logic                          busy_o,             // there is work
     output logic                          divider_wait_o,     // a hit waits for a divider
     output logic                          tap_test_valid_o,   // a test ends
@@ -82,7 +82,8 @@ module gridrt_pe #(
   logic head_valid, head_ready, fetch_valid, fetch_ready;
   logic queue_drop_valid, queue_drop_ready, waiting, working;
   gridrt_pkg::task_t head;
-  logic found_valid, found_ready, reference_valid, reference_ready, none, last, aborted;
+  logic found_valid, found_ready, reference_valid, reference_ready, last, aborted;
+  gridrt_pkg::slot_event_t none;
   logic [SLOT_W-1:0] reference_slot;
   logic [TRI_W-1:0] reference_triangle;
 
@@ -158,14 +159,11 @@ module gridrt_pe #(
   );
 
   // A task without a test goes first, since the one that is cancelled can wait.
-  logic none_leaves, test, room, taken, result_valid;
-  assign none_leaves = reference_valid && none;
-  assign queue_drop_ready = !none_leaves;
-  assign reference_ready = none || room;
-  assign test = reference_valid && !none && room;
-  assign drop_o = {
-    none_leaves || queue_drop_valid, none_leaves ? reference_slot : head.slot
-  };
+  logic test, room, taken, result_valid;
+  assign queue_drop_ready = !none.valid;
+  assign reference_ready = room;
+  assign test = reference_valid && room;
+  assign drop_o = {none.valid || queue_drop_valid, none.valid ? none.slot : head.slot};
   assign drop_cancelled_o = (queue_drop_valid && queue_drop_ready) || aborted;
   assign test_o = test;
   assign busy_o = waiting || working || found_valid;

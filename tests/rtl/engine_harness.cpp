@@ -36,8 +36,8 @@ void add(EngineCounts& sum, std::uint32_t counts) {
   sum.no_ray += field(1);
   sum.in_flight += field(1);
   sum.feedback_waits += field(1);
-  sum.interrupts += field(4);
-  sum.masked += field(4);
+  sum.interrupts += field(3);
+  sum.masked += field(5);
   sum.tests += field(3);
   sum.steps += field(3);
   sum.rays += field(1);

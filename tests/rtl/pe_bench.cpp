@@ -78,8 +78,8 @@ TEST_F(Pe, FillsUpAndRecovers) {
 }
 
 #ifndef GRIDRT_STALL
-// The pace: tests for each clock in which there is work. Two references are read in a clock, so a
-// list of n takes (n + 1) / 2 clocks at the least if the mask leaves out most of it.
+// The pace: tests for each clock in which there is work. Four references are read in a clock, so a
+// list of n takes (n + 3) / 4 clocks at the least if the mask leaves out most of it.
 TEST_F(Pe, MakesATestAClock) {
   struct Load {
     const char* name;

@@ -116,9 +116,21 @@ struct PeTest {
   Event event;
 };
 
+/// The order in which a list is read: four references a clock, those with even indices first.
+inline std::vector<int> order_of(const Task& task) {
+  std::vector<int> order;
+  const bool odd = task.first % 2 != 0;
+  for (int row = 0; row < task.count; row += 4) {
+    for (const int i : odd ? std::array{1, 3, 0, 2} : std::array{0, 2, 1, 3}) {
+      if (row + i < task.count) order.push_back(row + i);
+    }
+  }
+  return order;
+}
+
 inline std::vector<PeTest> tests_of(const PeImage& image, const PeRay& ray, const Task& task) {
   std::vector<PeTest> tests;
-  for (int i = 0; i < task.count; ++i) {
+  for (const int i : order_of(task)) {
     const Reference& r = image.references[static_cast<std::size_t>(task.first + i)];
     if (!share_halves(r.mask, task.halves)) continue;
     const Verdict verdict = judge(ray.p0, ray.p1, image.corners(r.triangle));

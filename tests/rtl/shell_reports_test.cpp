@@ -59,8 +59,8 @@ TEST(ShellReports, CountersAreSums) {
     counters.rays += field(31, 1);
     counters.steps += field(28, 3);
     counters.tests += field(25, 3);
-    counters.masked += field(21, 4);
-    counters.interrupts += field(17, 4);
+    counters.masked += field(20, 5);
+    counters.interrupts += field(17, 3);
     counters.feedback_waits += field(16, 1);
     counters.cycles += flying ? 1 : 0;
     if (!flying) continue;
