@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "host/image/blocks.hpp"
+#include "host/image/dealing.hpp"
 #include "host/image/ray_load.hpp"
 
 namespace gridrt {
@@ -20,18 +21,8 @@ constexpr std::array kBlockShares{1.0, 0.95, 0.9,  0.8,  0.68, 0.55, 0.42,
 constexpr std::uint64_t kBlocksPerTriangle = 8;
 constexpr std::uint64_t kMoreBlocks = 64;
 /// Many boxes are dealt more evenly, few need fewer copies of triangles.
-constexpr std::array kBoxesPerPe{32, 24, 16, 12, 8, 6, 4, 2, 1};
+constexpr std::array kBoxesPerPe{512, 256, 128, 96, 64, 48, 32, 24, 16, 12, 8, 6, 4, 2, 1};
 constexpr double kEnough = 1.35;  ///< a grid this much dearer than the best: coarser ones are too
-
-constexpr std::array<std::array<std::uint8_t, 4>, 24> permutations_of_four() {
-  std::array<std::array<std::uint8_t, 4>, 24> all{};
-  std::array<std::uint8_t, 4> p{0, 1, 2, 3};
-  for (auto& one : all) {
-    one = p;
-    std::ranges::next_permutation(p);
-  }
-  return all;
-}
 
 /// About cubic voxels in scene units, two by two, as many as `blocks` allows.
 glm::ivec3 counts_for(const Lattice& lattice, double blocks) {
@@ -59,113 +50,77 @@ glm::ivec3 counts_for(const Lattice& lattice, double blocks) {
   return count;
 }
 
-using ViewSums = std::array<double, kViews>;
-
-ViewSums work_of(const VoxelGrid& grid, const GridLoad& load, const VoxelBox& box) {
-  ViewSums sums{};
-  for (int z = box.lo.z; z < box.hi.z; ++z) {
-    for (int y = box.lo.y; y < box.hi.y; ++y) {
-      const std::size_t first = grid.index({box.lo.x, y, z});
-      const auto length = static_cast<std::size_t>(box.hi.x - box.lo.x);
-      for (std::size_t v = 0; v < kViews; ++v) {
-        for (std::size_t i = first; i < first + length; ++i) sums[v] += load.work[v][i];
-      }
-    }
-  }
-  return sums;
-}
-
-/// Boxes that follow each other are neighbours, so each run of `pes` boxes goes to all PEs, in the
-/// order that keeps the PEs' work most even in every view.
-std::vector<std::uint8_t> deal_by_work(const VoxelGrid& grid, const GridLoad& load,
-                                       std::span<const VoxelBox> boxes, int pes) {
-  static constexpr auto kOrders = permutations_of_four();
-  const auto width = static_cast<std::size_t>(pes);
-  std::vector<ViewSums> work(boxes.size());
-  for (std::size_t i = 0; i < boxes.size(); ++i) work[i] = work_of(grid, load, boxes[i]);
-  std::vector<ViewSums> held(width, ViewSums{});
-  std::vector<std::uint8_t> owners(grid.cells(), 0);
-  for (std::size_t first = 0; first < boxes.size(); first += width) {
-    const std::size_t count = std::min(width, boxes.size() - first);
-    const std::array<std::uint8_t, 4>* best = nullptr;
-    double least = 0.0;
-    for (const auto& order : kOrders) {
-      if (std::any_of(order.begin(), order.begin() + pes, [&](int p) { return p >= pes; })) {
-        continue;
-      }
-      double squares = 0.0;
-      for (std::size_t i = 0; i < count; ++i) {
-        for (std::size_t v = 0; v < kViews; ++v) squares += held[order[i]][v] * work[first + i][v];
-      }
-      if (best == nullptr || squares < least) {
-        best = &order;
-        least = squares;
-      }
-    }
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::uint8_t pe = (*best)[i];
-      for (std::size_t v = 0; v < kViews; ++v) held[pe][v] += work[first + i][v];
-      give_box(grid, boxes[first + i], pe, owners);
-    }
-  }
-  return owners;
-}
-
 struct Candidate {
-  std::size_t grid = 0;  ///< index of its grid and lists
+  std::size_t grid = 0;  ///< index of its grid
   std::vector<std::uint8_t> owners;
   Mapping mapping = Mapping::kMeasured;
   double clocks = 0.0;
 };
 
-struct GridLists {
-  VoxelGrid grid;
-  VoxelLists lists;
-};
-
-bool may_fit(const Cut& cut, const GridLists& g) {
+bool may_fit(const Cut& cut, const VoxelGrid& grid, const VoxelLists& lists) {
   std::uint64_t cells = 0;
-  for (std::size_t i = 0; i < g.grid.cells(); ++i) {
-    if (g.lists.first[i + 1] > g.lists.first[i]) ++cells;
+  for (std::size_t i = 0; i < grid.cells(); ++i) {
+    if (lists.first[i + 1] > lists.first[i]) ++cells;
   }
-  return block_total(g.grid) <= cut.memory.blocks && cells <= cut.memory.cells &&
-         g.lists.references.size() <=
+  return block_total(grid) <= cut.memory.blocks && cells <= cut.memory.cells &&
+         lists.references.size() <=
              static_cast<std::uint64_t>(cut.pes) * std::uint64_t{cut.memory.references};
 }
 
-/// Adds the dealings of a grid to be tried; returns the cheapest one's clocks.
-Result<double> add_dealings(const Cut& cut, const GridLists& g, const GridLoad& load,
-                            std::size_t index, std::vector<Candidate>& out) {
-  double least = std::numeric_limits<double>::infinity();
-  const auto add = [&](std::vector<std::uint8_t> owners, Mapping mapping) {
-    const double clocks = estimate_clocks(load, owners, cut.pes);
-    least = std::min(least, clocks);
-    out.push_back({index, std::move(owners), mapping, clocks});
-  };
-  if (cut.mapping != Mapping::kMeasured || g.grid.cells() <= static_cast<std::size_t>(cut.pes)) {
+/// Finds the grids worth trying and, for each, the dealings that fit.
+class Search {
+ public:
+  explicit Search(const LatticeScene& scene)
+      : scene_(scene), sample_(scene.cut.lattice, scene.local.triangles) {}
+
+  Result<void> run();
+  Result<Image> pack() const;
+
+ private:
+  Result<void> deal(const MeasuredGrid& measured);
+  void add(const MeasuredGrid& measured, std::vector<std::uint8_t> owners, Mapping mapping);
+
+  const LatticeScene& scene_;
+  RaySample sample_;
+  std::vector<MeasuredGrid> grids_;
+  std::vector<Candidate> candidates_;
+  double best_ = std::numeric_limits<double>::infinity();
+  double least_ = 0.0;  ///< of the grid at hand, whether it fits or not
+};
+
+void Search::add(const MeasuredGrid& measured, std::vector<std::uint8_t> owners, Mapping mapping) {
+  const Cut& cut = scene_.cut;
+  least_ = std::min(least_, estimate_clocks(measured.load, owners, cut.pes));
+  const bool fits =
+      dealing_fits(scene_.local, cut, measured, owners) ||
+      (mapping == Mapping::kMeasured && spare_copies(scene_.local, cut, measured, owners));
+  if (!fits) return;
+  const double clocks = estimate_clocks(measured.load, owners, cut.pes);
+  candidates_.push_back({grids_.size(), std::move(owners), mapping, clocks});
+}
+
+Result<void> Search::deal(const MeasuredGrid& measured) {
+  const Cut& cut = scene_.cut;
+  const auto pes = static_cast<std::size_t>(cut.pes);
+  if (cut.mapping != Mapping::kMeasured || measured.grid.cells() <= pes) {
     const Mapping mapping = cut.mapping == Mapping::kMeasured ? Mapping::kBoxes : cut.mapping;
-    auto owners = deal_voxels(g.grid, g.lists, mapping, cut.pes);
+    auto owners = deal_voxels(measured.grid, measured.lists, mapping, cut.pes);
     if (!owners) return std::unexpected(std::move(owners.error()));
-    add(std::move(*owners), mapping);
-    return least;
+    add(measured, std::move(*owners), mapping);
+    return {};
   }
   for (const int boxes : kBoxesPerPe) {
     if (cut.pes == 1 && boxes > 1) continue;
-    const std::vector<VoxelBox> cuts = balanced_boxes(g.grid, g.lists, boxes * cut.pes);
-    add(deal_by_work(g.grid, load, cuts, cut.pes), Mapping::kMeasured);
+    const std::vector<VoxelBox> cuts =
+        balanced_boxes(measured.grid, measured.lists, boxes * cut.pes);
+    add(measured, deal_by_work(measured, cuts, cut.pes), Mapping::kMeasured);
   }
-  return least;
+  return {};
 }
 
-}  // namespace
-
-Result<Image> pack_measured(const LatticeScene& scene) {
-  const Cut& cut = scene.cut;
-  const std::span<const LatticeTriangle> triangles = scene.local.triangles;
-  RaySample sample(cut.lattice, triangles);
-  std::vector<GridLists> grids;
-  std::vector<Candidate> candidates;
-  double best = std::numeric_limits<double>::infinity();
+Result<void> Search::run() {
+  const Cut& cut = scene_.cut;
+  const std::span<const LatticeTriangle> triangles = scene_.local.triangles;
   const auto most = static_cast<double>(std::min<std::uint64_t>(
       cut.memory.blocks, kBlocksPerTriangle * triangles.size() + kMoreBlocks));
   glm::ivec3 before{0};
@@ -175,27 +130,38 @@ Result<Image> pack_measured(const LatticeScene& scene) {
     before = count;
     const auto grid = make_grid(cut.lattice, triangles.size(), count);
     if (!grid) continue;
-    GridLists g{*grid, bin_triangles(*grid, triangles)};
-    if (!may_fit(cut, g)) continue;
-    const GridLoad load = sample.measure(g.grid, g.lists);
-    const auto clocks = add_dealings(cut, g, load, grids.size(), candidates);
-    if (!clocks) return std::unexpected(clocks.error());
-    grids.push_back(std::move(g));
-    if (*clocks > kEnough * best) break;
-    best = std::min(best, *clocks);
+    MeasuredGrid measured{*grid, bin_triangles(*grid, triangles), {}};
+    if (!may_fit(cut, measured.grid, measured.lists)) continue;
+    measured.load = sample_.measure(measured.grid, measured.lists);
+    least_ = std::numeric_limits<double>::infinity();
+    if (auto dealt = deal(measured); !dealt) return dealt;
+    measured.load = {};
+    grids_.push_back(std::move(measured));
+    if (least_ > kEnough * best_) break;
+    best_ = std::min(best_, least_);
   }
-  std::ranges::stable_sort(candidates, {}, &Candidate::clocks);
-  Result<Image> image = fail(ErrorKind::kLimit, "no grid that was measured fits");
-  for (Candidate& c : candidates) {
-    Cut one = cut;
-    one.grid = grids[c.grid].grid;
-    one.lists = grids[c.grid].lists;
-    one.owners = std::move(c.owners);
-    one.mapping = c.mapping;
-    image = pack_image(scene.local, one);
-    if (image || image.error().kind != ErrorKind::kLimit) break;
+  return {};
+}
+
+Result<Image> Search::pack() const {
+  const auto best = std::ranges::min_element(candidates_, {}, &Candidate::clocks);
+  if (best == candidates_.end()) {
+    return fail(ErrorKind::kLimit, "no grid that was measured fits");
   }
-  return image;
+  Cut cut = scene_.cut;
+  cut.grid = grids_[best->grid].grid;
+  cut.lists = grids_[best->grid].lists;
+  cut.owners = best->owners;
+  cut.mapping = best->mapping;
+  return pack_image(scene_.local, cut);
+}
+
+}  // namespace
+
+Result<Image> pack_measured(const LatticeScene& scene) {
+  Search search(scene);
+  if (auto found = search.run(); !found) return std::unexpected(std::move(found.error()));
+  return search.pack();
 }
 
 }  // namespace gridrt

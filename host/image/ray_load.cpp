@@ -4,6 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include <glm/geometric.hpp>
+
 #include "host/grid/traversal.hpp"
 #include "host/image/blocks.hpp"
 
@@ -14,10 +16,15 @@ namespace {
 constexpr std::size_t kFewestRays = 32;  // a view
 constexpr std::size_t kMostRays = 256;
 constexpr std::size_t kTrianglesPerRay = 8;
-/// Towards the scene, off the axes, no two opposite.
+/// Where rays of a view go: towards the scene, off the axes, no two opposite.
+constexpr std::size_t kViews = kRayGroups / 2;
 constexpr std::array<glm::ivec3, kViews> kDirections{
     {{9, 3, -2}, {-9, 4, 3}, {2, 9, 4}, {4, -9, 2}, {-3, 2, 9}, {3, 4, -9}}};
-constexpr double kUnits = 2.0;  ///< traversal units and expanders of the board
+/// Towards the light of a view: sideways, from what faces both.
+constexpr std::array<glm::ivec3, kViews> kLights{
+    {{-3, 8, 5}, {4, 9, -4}, {7, -4, -6}, {-5, 3, -7}, {8, 5, 2}, {-8, 3, 4}}};
+constexpr double kTraversalUnits = 4.0;  ///< of the board: a block a clock each
+constexpr double kExpanders = 2.0;       ///< a voxel a clock each
 
 /// Bits 11 to 63 of splitmix64 (S. Vigna), in [0, 1): the same on every machine.
 class Uniform {
@@ -143,7 +150,7 @@ class Walk {
 }  // namespace
 
 RaySample::RaySample(const Lattice& lattice, std::span<const LatticeTriangle> triangles)
-    : triangles_(triangles) {
+    : lattice_(lattice), triangles_(triangles) {
   const std::size_t rays = std::clamp(triangles.size() / kTrianglesPerRay, kFewestRays, kMostRays);
   Uniform uniform;
   for (std::size_t view = 0; view < kViews; ++view) {
@@ -153,28 +160,59 @@ RaySample::RaySample(const Lattice& lattice, std::span<const LatticeTriangle> tr
       if (!validate(ray)) continue;
       const Segment segment = make_segment(lattice, ray);
       if (segment.is_miss()) continue;
-      samples_.push_back({segment, view});
+      samples_.push_back({segment, view, {}});
       rays_[view] += 1.0;
     }
   }
 }
 
+void RaySample::add_shadow_ray(const Sample& primary) {
+  const LatticeTriangle& left = triangles_[primary.hit.id];
+  Ray ray;
+  for (int a = 0; a < 3; ++a) {
+    ray.direction[a] = std::ldexp(static_cast<double>(kLights[primary.group][a]),
+                                  std::max(-1000, -lattice_.scale[a]));
+  }
+  const glm::dvec3 e1{left.v[1] - left.v[0]};
+  const glm::dvec3 e2{left.v[2] - left.v[0]};
+  const glm::dvec3 normal = glm::cross(e1, e2);
+  const glm::dvec3 light{kLights[primary.group]};
+  const glm::dvec3 incoming{primary.segment.p1 - primary.segment.p0};
+  // In shadow by itself: no ray.
+  if (glm::dot(normal, light) * glm::dot(normal, incoming) >= 0.0) return;
+  const auto origin = secondary_origin(lattice_, primary.segment, left, ray.direction);
+  if (!origin) return;
+  for (int a = 0; a < 3; ++a) {
+    ray.origin[a] = static_cast<double>(lattice_.lo[a]) +
+                    std::ldexp(static_cast<double>((*origin)[a] - 2), -lattice_.scale[a]);
+  }
+  if (!validate(ray)) return;
+  const Segment segment = make_secondary_segment(lattice_, ray, *origin, left, primary.hit.id);
+  if (segment.is_miss()) return;
+  samples_.push_back({segment, kViews + primary.group, {}});
+  rays_[kViews + primary.group] += 1.0;
+}
+
 void RaySample::find_hits(const VoxelGrid& grid, const VoxelLists& lists) {
   const Walk walk(grid, lists);
-  for (Sample& s : samples_) {
+  for (std::size_t i = 0; i < samples_.size(); ++i) {
+    Sample s = samples_[i];
     const glm::ivec3 d = s.segment.p1 - s.segment.p0;
     traverse(
         grid, s.segment.p0, s.segment.p1,
         [&](const glm::ivec3& voxel, int direction) { return walk.jump(voxel, direction); },
         [&](const VoxelVisit& v) {
-          if (v.enter.quotient() > s.quotient) return false;
+          if (v.enter.quotient() > s.hit.quotient) return false;
           for (const VoxelReference& r : walk.list(v.voxel)) {
+            if (r.triangle == s.segment.ignore) continue;
             const auto hit =
                 intersect_narrow(s.segment.p0, d, EdgeTriangle(triangles_[r.triangle]));
-            if (hit) s.quotient = std::min(s.quotient, hit_quotient(*hit));
+            if (hit) s.hit = std::min(s.hit, HitKey{hit_quotient(*hit), r.triangle});
           }
           return true;
         });
+    samples_[i] = s;
+    if (s.group < kViews && s.hit.id != kNoTriangle) add_shadow_ray(s);
   }
   hits_known_ = true;
 }
@@ -188,8 +226,8 @@ GridLoad RaySample::measure(const VoxelGrid& grid, const VoxelLists& lists) {
   double steps = 0.0;
   double tasks = 0.0;
   for (const Sample& s : samples_) {
-    const auto share = static_cast<float>(1.0 / rays_[s.view]);
-    steps += walk.run(s.segment, s.quotient, [&](const VoxelVisit& v) {
+    const auto share = static_cast<float>(1.0 / rays_[s.group]);
+    steps += walk.run(s.segment, s.hit.quotient, [&](const VoxelVisit& v) {
       const std::span<const VoxelReference> list = walk.list(v.voxel);
       if (list.empty()) return;
       const HalfMask halves = ray_halves(grid, s.segment.p0, s.segment.p1, v);
@@ -199,7 +237,7 @@ GridLoad RaySample::measure(const VoxelGrid& grid, const VoxelLists& lists) {
       }
       tasks += 1.0;
       const std::size_t clocks = std::max({(list.size() + 1) / 2, tests, std::size_t{1}});
-      load.work[s.view][grid.index(v.voxel)] += share * static_cast<float>(clocks);
+      load.work[s.group][grid.index(v.voxel)] += share * static_cast<float>(clocks);
     });
   }
   load.steps = steps / static_cast<double>(samples_.size());
@@ -213,10 +251,10 @@ double estimate_clocks(const GridLoad& load, std::span<const std::uint8_t> owner
   for (const std::vector<float>& work : load.work) {
     std::ranges::fill(sums, 0.0);
     for (std::size_t i = 0; i < work.size(); ++i) sums[owners[i]] += work[i];
-    busiest += *std::ranges::max_element(sums) / static_cast<double>(kViews);
+    busiest += *std::ranges::max_element(sums) / static_cast<double>(kRayGroups);
   }
   double sum = 0.0;
-  for (const double part : {load.steps / kUnits, load.tasks / kUnits, busiest}) {
+  for (const double part : {load.steps / kTraversalUnits, load.tasks / kExpanders, busiest}) {
     sum += part * part * part * part;
   }
   return std::sqrt(std::sqrt(sum));

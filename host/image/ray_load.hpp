@@ -14,20 +14,22 @@
 
 namespace gridrt {
 
-inline constexpr std::size_t kViews = 6;  ///< directions from which sample rays come
+/// Groups of sample rays, each of which is to keep all PEs busy: primary rays from six directions,
+/// then shadow rays from what each of these hits.
+inline constexpr std::size_t kRayGroups = 12;
 
 /// What the sample rays do on one grid; numbers are means of a ray. Work is the clocks that a PE
 /// spends with a voxel's list: it reads two references and tests one a clock.
 struct GridLoad {
   double steps = 0.0;  ///< blocks looked at
   double tasks = 0.0;  ///< voxels with triangles that are met
-  /// Work by voxel, for the rays of each view.
-  std::array<std::vector<float>, kViews> work;
+  /// Work by voxel, for the rays of each group.
+  std::array<std::vector<float>, kRayGroups> work;
 };
 
-/// Rays through the whole lattice box from six directions, evenly spread over what is seen of it
-/// from there, as a camera that has the box in view would send them; the same ones for the same
-/// scene.
+/// Primary rays through the whole lattice box, evenly spread over what is seen of it from each
+/// direction, as a camera that has the box in view would send them, and shadow rays towards a light
+/// that shines from another direction; the same ones for the same scene.
 class RaySample {
  public:
   /// `triangles` outlive the sample; lattices of at most 17 bits.
@@ -39,19 +41,21 @@ class RaySample {
  private:
   struct Sample {
     Segment segment;
-    std::size_t view = 0;
-    std::uint32_t quotient = 0xFFFFFFFFU;  ///< of the closest hit
+    std::size_t group = 0;
+    HitKey hit;  ///< the closest one
   };
   void find_hits(const VoxelGrid& grid, const VoxelLists& lists);
+  void add_shadow_ray(const Sample& primary);
 
+  Lattice lattice_;
   std::span<const LatticeTriangle> triangles_;
   std::vector<Sample> samples_;
-  std::array<double, kViews> rays_{};  ///< number by view
+  std::array<double, kRayGroups> rays_{};  ///< number by group
   bool hits_known_ = false;
 };
 
 /// Clocks of a ray, estimated: the parts of a device work at the same time, so that the busiest one
-/// decides, and a little more the closer the others come. The busiest PE counts, view by view.
+/// decides, and a little more the closer the others come. The busiest PE counts, group by group.
 /// `owners` are in [0, pes).
 double estimate_clocks(const GridLoad& load, std::span<const std::uint8_t> owners, int pes);
 
