@@ -79,7 +79,7 @@ TEST(Limits, EveryMemoryIsCheckedToTheEntry) {
   expect_over(use, "2561 vertices in PE 3");
   use = full_use();
   ++use.pes[0].references;
-  expect_over(use, "11265 references in PE 0");
+  expect_over(use, "10241 references in PE 0");
   EXPECT_TRUE(check_limits(protocol::Layout::kWide, memory_sizes(protocol::Layout::kWide), use));
 }
 
