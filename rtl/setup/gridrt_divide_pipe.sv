@@ -6,7 +6,8 @@ module gridrt_divide_pipe #(
     parameter int unsigned QUOTIENT_W = 11,
     parameter int unsigned STEP = 1,
     parameter bit CONSTANT = 1'b0,  // the divisor stays the same while anything is in flight
-    localparam int unsigned LATENCY = (QUOTIENT_W + STEP - 1) / STEP
+    localparam int unsigned LATENCY = (QUOTIENT_W + STEP - 1) / STEP,
+    localparam int unsigned FIRST_W = DIVIDEND_W - QUOTIENT_W
 ) (
     input  logic                  clk_i,
     input  logic                  rst_ni,
@@ -44,6 +45,8 @@ module gridrt_divide_pipe #(
         .DIVISOR_W(DIVISOR_W),
         .QUOTIENT_W(QUOTIENT_W),
         .BITS((i == LATENCY - 1) ? QUOTIENT_W - i * STEP : STEP),
+        // A remainder is not above the dividend's bits seen so far.
+        .REMAINDER_W((FIRST_W + i * STEP < DIVISOR_W) ? FIRST_W + i * STEP : DIVISOR_W),
         .CONSTANT(CONSTANT)
     ) i_stage (
         .clk_i,

@@ -4,6 +4,7 @@ module gridrt_divide_stage #(
     parameter int unsigned DIVISOR_W = 18,
     parameter int unsigned QUOTIENT_W = 11,
     parameter int unsigned BITS = 1,
+    parameter int unsigned REMAINDER_W = DIVISOR_W,  // of remainder_i; bits above are 0
     parameter bit CONSTANT = 1'b0
 ) (
     input  logic                  clk_i,
@@ -30,7 +31,9 @@ module gridrt_divide_stage #(
     for (int unsigned j = 0; j < BITS; j++) begin
       shifted = {remainder, word[QUOTIENT_W-1]};
       difference = shifted - {1'b0, divisor_i};
-      remainder = difference[DIVISOR_W] ? shifted[DIVISOR_W-1:0] : difference[DIVISOR_W-1:0];
+      for (int unsigned i = 0; i < DIVISOR_W; i++) begin
+        remainder[i] = i <= REMAINDER_W + j && (difference[DIVISOR_W] ? shifted[i] : difference[i]);
+      end
       word = {word[QUOTIENT_W-2:0], !difference[DIVISOR_W]};
     end
   end

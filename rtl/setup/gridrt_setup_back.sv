@@ -1,106 +1,142 @@
-// Where the march starts on the lateral axes, in clocks 24 to 29 of gridrt_setup. The position at the
-// first half-face behind P0 is P0's plus the partial increment; from there it goes back, an increment
-// for each half-slab, to the block's entry face, so that traversal treats all blocks alike. (It may
-// get below the block; samples before P0 are held at P0's half by `low`.)
-module gridrt_setup_back (
-    input  logic                                              clk_i,
-    input  logic                                              rst_ni,
-    input  logic                                              enable_i,
-    input  logic                                              moving_i,       // a ray in clock 24
-    input  logic [2:0][gridrt_state_pkg::EDGE_W-1:0]          edges_i,
-    input  logic [1:0]                                        s24_axis_i,
-    input  logic [1:0]                                        s24_first_i,    // half-slab of P0
-    input  logic [1:0]                                        s24_far_i,      // P0 on the far face
-    input  logic [1:0][1:0]                                   s24_low_i,      // half of P0
-    input  logic [1:0][gridrt_state_pkg::EDGE_W-1:0]          s24_rest_i,     // in half steps
-    input  logic [1:0][gridrt_state_pkg::REST_W:0]            s24_slope_i,
-    input  logic [1:0][gridrt_state_pkg::REST_W:0]            s24_partial_i,
-    output logic [1:0][2:0]                                   s29_half_o,
-    output logic [1:0][gridrt_state_pkg::REST_W-1:0]          s29_rest_o,
-    output logic [1:0][gridrt_state_pkg::REST_W:0]            s29_slope_o,
-    output logic [1:0]                                        s29_first_o,
-    output logic [1:0][1:0]                                   s29_low_o
+// Where the march starts on the lateral axes, in clocks 23 to 31 of gridrt_setup, one axis after the
+// other. The position at the first half-face behind P0 is P0's plus the partial increment; from there
+// it goes back, an increment for each half-slab, to the block's entry face, so that traversal treats
+// all blocks alike. (It may get below the block; samples before P0 are held at P0's half by `low`.)
+module gridrt_setup_back #(
+    localparam int unsigned EDGE_W = gridrt_state_pkg::EDGE_W,
+    localparam int unsigned REST_W = gridrt_state_pkg::REST_W,
+    localparam int unsigned PARTIAL_W = EDGE_W + 2
+) (
+    input  logic                   clk_i,
+    input  logic                   rst_ni,
+    input  logic                   enable_i,
+    input  logic [2:0][EDGE_W-1:0] edges_i,
+    input  logic                   s23_far_i,     // P0 on the far face
+    input  logic [1:0]             s23_low_i,     // half of P0
+    input  logic [EDGE_W-2:0]      s23_rest_i,    // in half steps
+    input  logic [PARTIAL_W-1:0]   s23_partial_i,
+    input  logic                   s24_moving_i,
+    input  logic [REST_W:0]        s24_slope_i,
+    input  logic [1:0]             s24_first_i,   // half-slab of P0
+    input  logic [1:0]             s26_lateral_i, // 26 and 27: a lateral axis
+    output logic [1:0][2:0]        s31_half_o,
+    output logic [1:0][REST_W-1:0] s31_rest_o,
+    output logic [1:0][REST_W:0]   s31_slope_o,
+    output logic [1:0][1:0]        s31_low_o
 );
-  localparam int unsigned EDGE_W = gridrt_state_pkg::EDGE_W;
-  localparam int unsigned REST_W = gridrt_state_pkg::REST_W;
   localparam int unsigned SHIFT = gridrt_state_pkg::UNIT_SHIFT;
+  localparam int unsigned FINE = REST_W + 1 - PARTIAL_W;  // bits below the partial increment's
+  localparam int unsigned AT_W = REST_W + 3;  // from -4 half-voxels to almost one, signed
+  localparam int unsigned LOW_W = 18;  // of the slope, for one multiplier
 
-  logic [4:1] held;
-  logic [4:0] valid;  // of clocks 24 to 28
-  assign valid = {held, moving_i};
-  always_ff @(posedge clk_i or negedge rst_ni) begin
-    if (!rst_ni) held <= '0;
-    else if (enable_i) held <= valid[3:0];
-  end
-  // Registers of clocks 25 to 29.
-  logic [4:0][1:0] first;
-  logic [4:0][1:0][1:0] low;
-  logic [4:0][1:0][2:0] half;
-  logic [4:0][1:0][REST_W-1:0] rest;
-  logic [4:0][1:0][REST_W:0] slope;
-  logic [4:0][1:0][EDGE_W-1:0] edges;
-  logic [1:0][REST_W:0] back;  // in clock 25: from P0 to the half-face before it, minus the partial
-  assign s29_half_o = half[4];
-  assign s29_rest_o = rest[4];
-  assign s29_slope_o = slope[4];
-  assign s29_first_o = first[4];
-  assign s29_low_o = low[4];
+  logic [5:0] far;  // of clocks 24 to 29
+  logic [6:0][1:0] low;  // of clocks 24 to 30
 
-  // In clock 25 + i: position minus `back`, with one half-voxel borrowed if that is below 0.
-  logic [3:0][1:0][REST_W+1:0] less;
-  logic [3:0][1:0][REST_W-1:0] moved;
-  always_comb begin
-    for (int unsigned i = 0; i < 4; i++) begin
-      for (int unsigned n = 0; n < 2; n++) begin
-        less[i][n] = {2'b00, rest[i][n]} - {1'b0, (i == 0) ? back[n] : slope[i][n]};
-        moved[i][n] = less[i][n][REST_W-1:0];
-        if (less[i][n][REST_W+1]) begin
-          moved[i][n][REST_W-1:SHIFT] = less[i][n][REST_W-1:SHIFT] + edges[i][n][EDGE_W-2:0];
-        end
-      end
-    end
-  end
-
+  // 24-27: position - half-slabs * slope. On the far face it is a unit before that face.
+  logic [PARTIAL_W:0] s24_here, s25_here;
+  logic [2:0] steps;
+  logic [LOW_W+1:0] s25_low_part;
+  logic [REST_W+2-LOW_W:0] s25_high_part, s26_high_part;
+  logic [AT_W:0] less;
+  logic [AT_W-1:0] s26_at, s27_at;
+  assign steps = {1'b0, s24_first_i} + 3'd1;
+  assign less = {1'b0, s25_here, FINE'(0), 1'b0} - (AT_W + 1)'({s25_low_part, far[1]});
   always_ff @(posedge clk_i) begin
-    if (enable_i && valid[0]) begin
-      first[0] <= s24_first_i;
-      low[0] <= s24_low_i;
-      slope[0] <= s24_slope_i;
-      for (int unsigned n = 0; n < 2; n++) begin
-        half[0][n] <= {1'b0, s24_low_i[n]};
-        rest[0][n] <= {s24_rest_i[n][EDGE_W-2:0], {SHIFT{s24_far_i[n]}}};
-        back[n] <= s24_slope_i[n] - s24_partial_i[n];
-        for (int unsigned a = 0; a < 3; a++) begin
-          if (s24_axis_i == 2'(a)) edges[0][n] <= edges_i[(a+n+1)%3];
-        end
-      end
-    end
-    for (int unsigned i = 0; i < 4; i++) begin
-      if (enable_i && valid[i+1]) begin
-        first[i+1] <= first[i];
-        low[i+1] <= low[i];
-        slope[i+1] <= slope[i];
-        edges[i+1] <= edges[i];
-        half[i+1] <= half[i];
-        rest[i+1] <= rest[i];
-        if (2'(i) <= first[i]) begin
-          for (int unsigned n = 0; n < 2; n++) begin
-            rest[i+1][n] <= moved[i][n];
-            half[i+1][n] <= half[i][n] - 3'(less[i][n][REST_W+1]);
-          end
-        end
-      end
+    if (enable_i) begin
+      s24_here <= {2'b00, s23_rest_i, (SHIFT - FINE)'(0)} + {1'b0, s23_partial_i};
+      s25_here <= s24_here;
+      s25_low_part <= (LOW_W + 2)'(s24_slope_i[LOW_W-1:0]) * (LOW_W + 2)'(steps);
+      s25_high_part <= (REST_W + 3 - LOW_W)'(s24_slope_i[REST_W:LOW_W]) *
+                       (REST_W + 3 - LOW_W)'(steps);
+      s26_at <= less[AT_W:1];
+      s26_high_part <= s25_high_part;
+      s27_at <= {s26_at[AT_W-1:LOW_W] - s26_high_part, s26_at[LOW_W-1:0]};
     end
   end
+
+  // 28-30: half-voxels and the rest within one: 4, 2 and 1 half-voxels' edge added or taken away.
+  logic [EDGE_W-1:0] s27_edge, s28_edge, s29_edge;
+  logic s27_below;
+  logic [EDGE_W+1:0] less4;
+  logic [EDGE_W+1:0] less2;
+  logic [EDGE_W:0] less1;
+  logic [EDGE_W:0] s28_high;
+  logic [EDGE_W-1:0] s29_high;
+  logic [EDGE_W-2:0] s30_high;
+  logic [2:0][SHIFT-1:0] fraction;  // of clocks 28 to 30
+  logic s28_above, s29_above;
+  logic s29_two;
+  logic [2:0] s30_half;
+  assign s27_below = s27_at[AT_W-1];
+  assign less4 = s27_at[AT_W-1:SHIFT] + ({s27_edge, 2'b00} & {EDGE_W + 2{s27_below}});
+  assign less2 = {1'b0, s28_high} - {1'b0, s28_edge, 1'b0};
+  assign less1 = {1'b0, s29_high} - {1'b0, s29_edge};
+  always_ff @(posedge clk_i) begin
+    if (enable_i) begin
+      s27_edge <= s26_lateral_i[1] ? edges_i[2] : s26_lateral_i[0] ? edges_i[1] : edges_i[0];
+      s28_edge <= s27_edge;
+      s29_edge <= s28_edge;
+      fraction <= {fraction[1:0], s27_at[SHIFT-1:0]};
+      s28_high <= less4[EDGE_W:0];
+      s28_above <= far[3] ^ s27_below;
+      s29_high <= less2[EDGE_W+1] ? s28_high[EDGE_W-1:0] : less2[EDGE_W-1:0];
+      s29_above <= s28_above;
+      s29_two <= !less2[EDGE_W+1];
+      s30_high <= less1[EDGE_W] ? s29_high[EDGE_W-2:0] : less1[EDGE_W-2:0];
+      s30_half <= {s29_above, low[5] & ~{2{far[5]}}} + {1'b0, s29_two, !less1[EDGE_W]};
+    end
+  end
+
+  // What rides along.
+  logic [REST_W:0] s30_slope;
+  always_ff @(posedge clk_i) begin
+    if (enable_i) begin
+      far <= {far[4:0], s23_far_i};
+      low <= {low[5:0], s23_low_i};
+    end
+  end
+  gridrt_delay #(
+      .WIDTH (REST_W + 1),
+      .CLOCKS(6)
+  ) i_slope (
+      .clk_i,
+      .rst_ni,
+      .enable_i,
+      .data_i(s24_slope_i),
+      .data_o(s30_slope)
+  );
+
+  // After clock 31 the second axis is in the registers of clock 30.
+  logic [2:0] s31_half;
+  logic [REST_W-1:0] s31_rest;
+  logic [REST_W:0] s31_slope;
+  logic [1:0] s31_low;
+  always_ff @(posedge clk_i) begin
+    if (enable_i) begin
+      s31_half  <= s30_half;
+      s31_rest  <= {s30_high, fraction[2]};
+      s31_slope <= s30_slope;
+      s31_low   <= low[6];
+    end
+  end
+  assign s31_half_o  = {s30_half, s31_half};
+  assign s31_rest_o  = {s30_high, fraction[2], s31_rest};
+  assign s31_slope_o = {s30_slope, s31_slope};
+  assign s31_low_o   = {low[6], s31_low};
 
 `ifdef GRIDRT_ASSERT
+  logic [4:0] moving;  // of clocks 25 to 29
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) moving <= '0;
+    else if (enable_i) moving <= {moving[3:0], s24_moving_i};
+  end
   always_ff @(posedge clk_i) begin
-    for (int unsigned n = 0; n < 2; n++) begin
-      if (rst_ni && enable_i && valid[0]) assert (s24_partial_i[n] <= s24_slope_i[n]);
-      if (rst_ni && enable_i && valid[4]) assert ({1'b0, rest[3][n]} < {edges[3][n], SHIFT'(0)});
+    if (rst_ni && enable_i && moving[2]) assert (!less4[EDGE_W+1]);
+    if (rst_ni && enable_i && moving[4]) begin
+      assert ((less1[EDGE_W] ? s29_high : less1[EDGE_W-1:0]) < s29_edge);
     end
   end
 `endif
   logic unused;
-  assign unused = &{1'b0, edges[4]};
+  assign unused = &{1'b0, s24_moving_i, less, less4, less2, less1, far};
 endmodule

@@ -125,8 +125,8 @@ TEST_P(Setup, EqualsTheModel) {
     }
   }
   if (offer == 100 && take == 100) {
-    // One ray a clock, but for the pipeline's length once a grid.
-    EXPECT_LT(clocks, rays + 40 * static_cast<long>(hard_grids(kBits).size()));
+    // One ray in two clocks, but for the pipeline's length once a grid.
+    EXPECT_LT(clocks, 2 * rays + 40 * static_cast<long>(hard_grids(kBits).size()));
   }
 }
 
