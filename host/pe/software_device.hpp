@@ -16,7 +16,7 @@ namespace gridrt {
 
 struct SoftwareDeviceOptions {
   std::string name = "seq";  ///< told in the Identity report, at most 32 characters
-  ScheduleOptions schedule = {};
+  ScheduleOptions schedule = ScheduleOptions();
   /// What it tells about itself, and what it refuses to go beyond.
   protocol::CapabilitiesReport capabilities = software_capabilities();
 };
