@@ -38,6 +38,7 @@ module gridrt_setup_ends #(
         .DIVISOR_W(EDGE_W),
         .QUOTIENT_W(HALF_W),
         .STEP(2),
+        .REMAINDER(1'b1),
         .CONSTANT(1'b1)
     ) i_half (
         .clk_i,
