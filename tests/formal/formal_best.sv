@@ -14,6 +14,7 @@ module formal_best #(
     input logic [SLOT_W-1:0]           watch_i,
     input gridrt_pkg::slot_event_t     alloc_i,
     input logic [PES-1:0]              event_valid_i,
+    input logic [PES-1:0]              dropped_i,
     input logic [PES-1:0][EVENT_W-1:0] event_i
 );
   logic rst_n = 1'b0;
@@ -38,6 +39,7 @@ module formal_best #(
       .event_valid_i,
       .event_ready_o(ready),
       .event_i,
+      .dropped_i,
       .end_o(ends),
       .interrupt_o(interrupt),
       .hit_o(hit),
@@ -59,7 +61,7 @@ module formal_best #(
 
   // What is right: the least key of all hits taken, and the limit that came with it. The block shows
   // it a clock later, the limits two.
-  logic has, has_q, has_qq;
+  logic alive, has, has_q, has_qq;  // alive: the slot has had a ray
   logic [KEY_W-1:0] key, key_q;
   logic [DIST_W-1:0] bound, bound_q, bound_qq;
   logic [SLOTS-1:0][2:0] quiet;  // clocks since the slot's last event
@@ -72,6 +74,7 @@ module formal_best #(
     assume (32'(watch_i) < SLOTS);
     if (!rst_n) begin
       slot <= watch_i;
+      alive <= 1'b0;
       has <= 1'b0;
       has_q <= 1'b0;
       has_qq <= 1'b0;
@@ -82,6 +85,7 @@ module formal_best #(
       // A slot is given to the next ray only after the last task of the ray before has ended and
       // has been counted.
       assume (!alloc_i.valid || 32'(alloc_i.slot) < SLOTS);
+      assume (!alloc_i.valid || !interrupt.valid);  // as gridrt_feedback has it
       for (int unsigned s = 0; s < SLOTS; s++) begin
         if (quiet[s] != '1) quiet[s] <= quiet[s] + 3'd1;
         if (alloc_i.valid && alloc_i.slot == SLOT_W'(s)) assume (quiet[s] >= 3'd2);
@@ -93,6 +97,7 @@ module formal_best #(
         if (event_valid_i[p]) begin
           assume (32'(one.slot) < SLOTS);
           assume (one.hit || one.last);
+          assume (alive || one.slot != slot);
           assume (!(alloc_i.valid && alloc_i.slot == one.slot));
           // A smaller quotient has no larger limit; equal quotients have the same.
           if (has && one.hit && one.slot == slot) begin
@@ -103,8 +108,10 @@ module formal_best #(
             if (one.slot == SLOT_W'(s)) quiet[s] <= '0;
           end
         end
-        clocks[p] <= (event_valid_i[p] && !ready[p]) ? clocks[p] + 4'd1 : '0;
-        assert (clocks[p] < 4'(PES));  // an event waits for one of each other PE at most
+        // Once its PE drops no other task, an event waits for one of each other PE at most.
+        clocks[p] <= (event_valid_i[p] && !ready[p] && !dropped_i[p]) ? clocks[p] + 4'd1 : '0;
+        assert (clocks[p] < 4'(PES));
+        assert (!(dropped_i[p] && ends[p][END_W-1]));  // a PE ends one task a clock
         assert (ends[p] == {event_valid_i[p] && ready[p] && one.last, one.slot});
         if (event_valid_i[p] && ready[p] && one.hit && one.slot == slot) begin
           has <= 1'b1;
@@ -129,12 +136,13 @@ module formal_best #(
         has <= 1'b0;
         has_q <= 1'b0;
         has_qq <= 1'b0;
+        alive <= 1'b1;
       end
       for (int unsigned s = 0; s < SLOTS; s++) begin
         if (slot == SLOT_W'(s)) assert (has_hit[s] == has_q);
       end
       assert (!has_q || id == key_q[ID_W-1:0]);
-      assert (limit == (has_qq ? bound_qq : '1));
+      assert (!alive || limit == (has_qq ? bound_qq : '1));
       cover (has_qq && limit == 2'd1 && key_q == 4'b0001 && bound_qq == 2'd1);
     end
   end

@@ -148,7 +148,7 @@ module formal_commit #(
       ray_held <= ray_valid_i && !ray_ready;
       ray_miss <= ray_miss_i;
       for (int unsigned t = 0; t < TUS; t++) begin
-        // A slot belongs to one unit; a step makes tasks before or when it says that it is doffer.
+        // A slot belongs to one unit; a step makes tasks before or when it says that it is done.
         assume (!inc_valid_i[t] || (32'(inc_slot_i[t]) % TUS == t && 32'(inc_slot_i[t]) < SLOTS));
         assume (!done_valid_i[t] || 32'(done_slot_i[t]) % TUS == t);
         assume (!done_valid_i[t] || 32'(done_slot_i[t]) < SLOTS);
@@ -248,6 +248,7 @@ module formal_commit #(
       waits  <= (was_fair && ray_valid_i && !ray_ready) ? waits + 6'd1 : '0;
 
       assert (!hit_valid || inside != '0);
+      assert (!alloc.valid || !interrupt.valid);  // blocks write one limit a clock
       if (in_flight && hit_valid && ahead == '0) begin
         assert (!live || own_over);
         assert (hit == has);

@@ -45,6 +45,7 @@ module formal_rob #(
   logic marked, inside_marked, answered, held, was_fair;
   logic [ID_W:0] answer, held_answer;
   logic [4:0] clocks;
+  logic [ENTRY_W:0] age;  // clocks since reset, up to ROB: the memory is being filled
   logic leaves;
   assign leaves = hit_valid && hit_ready_i;
 
@@ -58,6 +59,7 @@ module formal_rob #(
       held <= 1'b0;
       was_fair <= 1'b0;
       clocks <= '0;
+      age <= '0;
     end else begin
       // Reserved while there is room; each entry is answered once, in any order.
       assume (!reserve_i || room);
@@ -95,7 +97,8 @@ module formal_rob #(
         assert ({hit, id} == answer);
       end
       assert (clocks < 5'(2 * ROB + 4));
-      assert (room || inside >= (ENTRY_W + 2)'(ROB));
+      if (!age[ENTRY_W]) age <= age + 1'b1;
+      assert (room || !age[ENTRY_W] || inside >= (ENTRY_W + 2)'(ROB));
       cover (inside == (ENTRY_W + 2)'(ROB + 1));
       cover (marked && !inside_marked && answer == '1);
     end
