@@ -18,34 +18,57 @@ module gridrt_quotient #(
     output logic [gridrt_pkg::DIST_W-1:0] limit_o
 );
   localparam int unsigned STEPS = gridrt_pkg::KEY_BITS / 2;
-  localparam int unsigned ACC_W = gridrt_pkg::Q_W + B;
+  localparam int unsigned ACC_W = gridrt_pkg::KEY_BITS + B;
 
   logic [3:0] left;  // steps to go
-  logic [MAG_W-1:0] rest, det;
+  logic [MAG_W:0] rest;  // signed
+  logic [MAG_W-1:0] det;
   logic [gridrt_pkg::Q_W-1:0] quotient;
   logic [B-1:0] length;
-  logic [ACC_W-1:0] product;
+  logic [ACC_W-1:0] product;  // (quotient + 1) length - 1, but the length alone at first
 
-  // The first bit (2^24) is set for tn = det alone.
-  logic whole;
-  assign whole = tn_i >= det_i;
+  // The first bit (2^24) is set for tn = det alone, which the steps leave as it is: all their bits are
+  // ones then, of which the quotient takes none.
+  logic whole, stays_whole;
+  assign whole = tn_i == det_i;
 
-  // Two restoring steps.
-  logic [MAG_W:0] twice_1, less_1, twice_2, less_2;
-  logic [MAG_W-1:0] rest_1, rest_2;
-  logic bit_1, bit_2;
-  assign twice_1 = {rest, 1'b0};
-  assign less_1 = twice_1 - {1'b0, det};
-  assign bit_1 = !less_1[MAG_W];
-  assign rest_1 = bit_1 ? less_1[MAG_W-1:0] : twice_1[MAG_W-1:0];
-  assign twice_2 = {rest_1, 1'b0};
-  assign less_2 = twice_2 - {1'b0, det};
-  assign bit_2 = !less_2[MAG_W];
-  assign rest_2 = bit_2 ? less_2[MAG_W-1:0] : twice_2[MAG_W-1:0];
+  // Two steps that do not restore: a negative rest is followed by a sum.
+  logic [MAG_W:0] first, last;
+  logic no_bit_1, no_bit_2;
+  gridrt_add_sub #(
+      .WIDTH(MAG_W + 1)
+  ) i_first (
+      .sub_i(!rest[MAG_W]),
+      .a_i  ({rest[MAG_W-1:0], 1'b0}),
+      .b_i  ({1'b0, det}),
+      .sum_o(first)
+  );
+  gridrt_add_sub #(
+      .WIDTH(MAG_W + 1)
+  ) i_last (
+      .sub_i(!first[MAG_W]),
+      .a_i  ({first[MAG_W-1:0], 1'b0}),
+      .b_i  ({1'b0, det}),
+      .sum_o(last)
+  );
+  assign no_bit_1 = first[MAG_W];
+  assign no_bit_2 = last[MAG_W];
 
-  // The multiple of the length that the two bits stand for.
+  // The product is 4 times what it was, with 3 for the 1 that it lacks, less the length for each unit
+  // that the two bits are short of 3. In the first step it lacks nothing yet, and the 1 is taken away;
+  // for tn = det it never is, which leaves as much above 2^24 as 2^24 + 1 lengths do.
   logic [B+1:0] multiple;
-  assign multiple = (bit_1 ? {1'b0, length, 1'b0} : '0) + (bit_2 ? {2'b00, length} : '0);
+  logic lacks, product_below;
+  logic [ACC_W-1:0] next_product;
+  assign {next_product, product_below} = {product[ACC_W-3:0], {3{lacks}}} - {(ACC_W)'(multiple), 1'b1};
+  gridrt_add_sub #(  // as a module of its own it does not become one slow sum of three
+      .WIDTH(B + 2)
+  ) i_multiple (
+      .sub_i(1'b0),
+      .a_i  (no_bit_1 ? {1'b0, length, 1'b0} : '0),
+      .b_i  (no_bit_2 ? {2'b00, length} : '0),
+      .sum_o(multiple)
+  );
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
@@ -61,25 +84,25 @@ module gridrt_quotient #(
     if (start_i) begin
       det <= det_i;
       length <= length_i;
-      rest <= whole ? tn_i - det_i : tn_i;
+      stays_whole <= whole;
+      rest <= {1'b0, tn_i};
       quotient <= {{(gridrt_pkg::Q_W - 1) {1'b0}}, whole};
-      product <= whole ? ACC_W'(length_i) : '0;
+      product <= ACC_W'(length_i);
+      lacks <= whole;
     end else if (left != '0) begin
-      rest <= rest_2;
-      quotient <= {quotient[gridrt_pkg::Q_W-3:0], bit_1, bit_2};
-      product <= {product[ACC_W-3:0], 2'b00} + ACC_W'(multiple);
+      rest <= last;
+      quotient <= {quotient[gridrt_pkg::Q_W-3:0], !no_bit_1 && !stays_whole, !no_bit_2 && !stays_whole};
+      product <= next_product;
+      lacks <= 1'b1;
     end
   end
 
-  logic [ACC_W:0] next_product;
-  assign next_product = {1'b0, product} + (ACC_W + 1)'(length) - 1'b1;
-
   logic unused;
-  assign unused = ^next_product[gridrt_pkg::KEY_BITS-1:0];
+  assign unused = product_below;
 
   assign busy_o = left != '0;
   assign quotient_o = quotient;
-  assign limit_o = gridrt_pkg::DIST_W'(next_product >> gridrt_pkg::KEY_BITS);
+  assign limit_o = gridrt_pkg::DIST_W'(product >> gridrt_pkg::KEY_BITS);
 
 `ifdef GRIDRT_ASSERT
   always_ff @(posedge clk_i) begin
