@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+
+#include <glm/geometric.hpp>
 
 #include "host/grid/partition.hpp"
 
@@ -9,10 +12,10 @@ namespace gridrt {
 namespace {
 
 constexpr int kPasses = 6;
-/// A PE may get this much more than its share of a group's work by taking a voxel.
-constexpr double kUneven = 1.05;
+constexpr int kRounds = 4;
+/// A PE may get this much more than an even share by taking a voxel.
+constexpr float kUneven = 1.05F;
 
-using GroupSums = std::array<double, kRayGroups>;
 using Order = std::array<std::uint8_t, 4>;
 
 constexpr std::array<Order, 24> orders_of_four() {
@@ -25,24 +28,18 @@ constexpr std::array<Order, 24> orders_of_four() {
   return all;
 }
 
-GroupSums work_of(const MeasuredGrid& measured, std::size_t first, std::size_t last) {
-  GroupSums sums{};
-  for (std::size_t g = 0; g < kRayGroups; ++g) {
-    for (std::size_t i = first; i < last; ++i) sums[g] += measured.load.work[g][i];
-  }
-  return sums;
+void add(Shares& sum, const Shares& part, float sign = 1.0F) {
+  for (std::size_t g = 0; g < sum.size(); ++g) sum[g] += sign * part[g];
 }
 
-void add(GroupSums& sum, const GroupSums& part, double sign = 1.0) {
-  for (std::size_t g = 0; g < kRayGroups; ++g) sum[g] += sign * part[g];
-}
-
-GroupSums work_of(const MeasuredGrid& measured, const VoxelBox& box) {
-  GroupSums sums{};
+Shares shares_of(const MeasuredGrid& measured, const VoxelBox& box) {
+  Shares sums{};
   for (int z = box.lo.z; z < box.hi.z; ++z) {
     for (int y = box.lo.y; y < box.hi.y; ++y) {
-      const std::size_t first = measured.grid.index({box.lo.x, y, z});
-      add(sums, work_of(measured, first, first + static_cast<std::size_t>(box.hi.x - box.lo.x)));
+      for (int x = box.lo.x; x < box.hi.x; ++x) {
+        const std::size_t i = measured.grid.index({x, y, z});
+        if (measured.lists.first[i + 1] > measured.lists.first[i]) add(sums, measured.shares[i]);
+      }
     }
   }
   return sums;
@@ -56,12 +53,10 @@ class Holdings {
       : measured_(measured),
         owners_(owners),
         held_(triangles),
-        work_(static_cast<std::size_t>(pes)) {
+        shares_(static_cast<std::size_t>(pes), Shares{}) {
     for (std::size_t i = 0; i < owners.size(); ++i) {
       for (const VoxelReference& r : list(i)) ++held_[r.triangle][owners[i]];
-      const GroupSums work = work_of(measured, i, i + 1);
-      add(work_[owners[i]], work);
-      add(total_, work);
+      add(shares_[owners[i]], measured.shares[i]);
     }
   }
 
@@ -73,14 +68,14 @@ class Holdings {
     int spared = 0;
     for (const VoxelReference& r : references) spared += held_[r.triangle][from] == 1 ? 1 : 0;
     if (spared == 0) return false;
-    const GroupSums work = work_of(measured_, voxel, voxel + 1);
+    const Shares& share = measured_.shares[voxel];
     int least = spared;
     std::uint8_t best = from;
-    for (std::uint8_t to = 0; to < work_.size(); ++to) {
+    for (std::uint8_t to = 0; to < shares_.size(); ++to) {
       if (to == from) continue;
       int made = 0;
       for (const VoxelReference& r : references) made += held_[r.triangle][to] == 0 ? 1 : 0;
-      if (made < least && stays_even(from, to, work)) {
+      if (made < least && stays_even(from, to, share)) {
         least = made;
         best = to;
       }
@@ -90,8 +85,8 @@ class Holdings {
       --held_[r.triangle][from];
       ++held_[r.triangle][best];
     }
-    add(work_[from], work, -1.0);
-    add(work_[best], work);
+    add(shares_[from], share, -1.0F);
+    add(shares_[best], share);
     owners_[voxel] = best;
     return true;
   }
@@ -103,11 +98,11 @@ class Holdings {
         .subspan(first[voxel], first[voxel + 1] - first[voxel]);
   }
 
-  [[nodiscard]] bool stays_even(std::uint8_t from, std::uint8_t to, const GroupSums& work) const {
-    for (std::size_t g = 0; g < kRayGroups; ++g) {
-      const double after = work_[to][g] + work[g];
-      const double share = total_[g] / static_cast<double>(work_.size());
-      if (after > kUneven * share && after > work_[from][g]) return false;
+  [[nodiscard]] bool stays_even(std::uint8_t from, std::uint8_t to, const Shares& share) const {
+    const float even = 1.0F / static_cast<float>(shares_.size());
+    for (std::size_t g = 0; g < share.size(); ++g) {
+      const float after = shares_[to][g] + share[g];
+      if (after > kUneven * even && after > shares_[from][g]) return false;
     }
     return true;
   }
@@ -115,8 +110,7 @@ class Holdings {
   const MeasuredGrid& measured_;
   std::vector<std::uint8_t>& owners_;
   std::vector<std::array<std::uint32_t, 4>> held_;  ///< voxels by triangle and PE
-  std::vector<GroupSums> work_;                     ///< by PE
-  GroupSums total_{};
+  std::vector<Shares> shares_;                      ///< by PE
 };
 
 }  // namespace
@@ -149,35 +143,90 @@ bool dealing_fits(const LocalTriangles& local, const Cut& cut, const MeasuredGri
          std::ranges::max(vertices) <= cut.memory.vertices;
 }
 
+void find_shares(std::span<const LatticeTriangle> triangles, const Lattice& lattice,
+                 MeasuredGrid& measured) {
+  std::array<glm::dvec3, kFacings> directions{};
+  std::size_t count = 0;
+  for (int i = 0; i < 27; ++i) {
+    const glm::dvec3 d{i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1};
+    if (i != 13) directions[count++] = glm::normalize(d);
+  }
+  std::vector<std::array<float, kFacings>> facing(triangles.size());
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    const auto& v = triangles[t].v;
+    glm::dvec3 n = glm::cross(glm::dvec3{v[1] - v[0]}, glm::dvec3{v[2] - v[0]});
+    // To the scene's own shape, but for a scale: the lattice may stretch its axes.
+    for (int a = 0; a < 3; ++a) n[a] = std::ldexp(n[a], lattice.scale[a] - lattice.scale[0]);
+    const double length = glm::length(n);
+    for (std::size_t d = 0; d < kFacings; ++d) {
+      const double cosine = length > 0.0 ? std::max(0.0, glm::dot(n, directions[d]) / length) : 0.0;
+      facing[t][d] = static_cast<float>(cosine * cosine * cosine * cosine);
+    }
+  }
+  measured.shares.assign(measured.grid.cells(), Shares{});
+  Shares total{};
+  const auto& first = measured.lists.first;
+  for (std::size_t i = 0; i < measured.shares.size(); ++i) {
+    if (first[i] == first[i + 1]) continue;
+    Shares& share = measured.shares[i];
+    for (std::size_t g = 0; g < kRayGroups; ++g) share[g] = measured.load.work[g][i];
+    for (std::uint64_t k = first[i]; k < first[i + 1]; ++k) {
+      const auto& f = facing[measured.lists.references[k].triangle];
+      for (std::size_t d = 0; d < kFacings; ++d) share[kRayGroups + d] += f[d];
+    }
+    add(total, share);
+  }
+  for (float& t : total) t = t > 0.0F ? 1.0F / t : 0.0F;
+  for (Shares& share : measured.shares) {
+    for (std::size_t g = 0; g < share.size(); ++g) share[g] *= total[g];
+  }
+}
+
 std::vector<std::uint8_t> deal_by_work(const MeasuredGrid& measured,
                                        std::span<const VoxelBox> boxes, int pes) {
   static constexpr std::array<Order, 24> kOrders = orders_of_four();
   const auto width = static_cast<std::size_t>(pes);
-  std::vector<GroupSums> held(width, GroupSums{});
-  std::vector<std::uint8_t> owners(measured.grid.cells(), 0);
-  for (std::size_t first = 0; first < boxes.size(); first += width) {
-    const std::size_t count = std::min(width, boxes.size() - first);
-    std::array<GroupSums, 4> work{};
-    for (std::size_t i = 0; i < count; ++i) work[i] = work_of(measured, boxes[first + i]);
-    const Order* best = nullptr;
-    double least = 0.0;
-    for (const Order& order : kOrders) {
-      if (std::any_of(order.begin(), order.begin() + pes, [&](int p) { return p >= pes; })) {
-        continue;
+  std::vector<Shares> shares(boxes.size());
+  for (std::size_t i = 0; i < boxes.size(); ++i) shares[i] = shares_of(measured, boxes[i]);
+  std::vector<Shares> held(width, Shares{});
+  std::vector<std::uint8_t> dealt(boxes.size(), 0);
+  // Each run in turn, given the others; the first ones could not know the last ones.
+  for (int round = 0; round < kRounds; ++round) {
+    for (std::size_t first = 0; first < boxes.size(); first += width) {
+      const std::size_t count = std::min(width, boxes.size() - first);
+      std::array<std::array<float, 4>, 4> uneven{};  // by box and PE
+      for (std::size_t i = first; i < first + count; ++i) {
+        if (round > 0) add(held[dealt[i]], shares[i], -1.0F);
       }
-      double uneven = 0.0;
       for (std::size_t i = 0; i < count; ++i) {
-        for (std::size_t g = 0; g < kRayGroups; ++g) uneven += held[order[i]][g] * work[i][g];
+        for (std::size_t p = 0; p < width; ++p) {
+          for (std::size_t g = 0; g < held[p].size(); ++g) {
+            uneven[i][p] += held[p][g] * shares[first + i][g];
+          }
+        }
       }
-      if (best == nullptr || uneven < least) {
-        best = &order;
-        least = uneven;
+      const Order* best = nullptr;
+      float least = 0.0F;
+      for (const Order& order : kOrders) {
+        if (std::any_of(order.begin(), order.begin() + pes, [&](int p) { return p >= pes; })) {
+          continue;
+        }
+        float sum = 0.0F;
+        for (std::size_t i = 0; i < count; ++i) sum += uneven[i][order[i]];
+        if (best == nullptr || sum < least) {
+          best = &order;
+          least = sum;
+        }
+      }
+      for (std::size_t i = 0; i < count; ++i) {
+        dealt[first + i] = (*best)[i];
+        add(held[(*best)[i]], shares[first + i]);
       }
     }
-    for (std::size_t i = 0; i < count; ++i) {
-      add(held[(*best)[i]], work[i]);
-      give_box(measured.grid, boxes[first + i], (*best)[i], owners);
-    }
+  }
+  std::vector<std::uint8_t> owners(measured.grid.cells(), 0);
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    give_box(measured.grid, boxes[i], dealt[i], owners);
   }
   return owners;
 }

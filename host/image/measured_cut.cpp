@@ -130,12 +130,14 @@ Result<void> Search::run() {
     before = count;
     const auto grid = make_grid(cut.lattice, triangles.size(), count);
     if (!grid) continue;
-    MeasuredGrid measured{*grid, bin_triangles(*grid, triangles), {}};
+    MeasuredGrid measured{*grid, bin_triangles(*grid, triangles), {}, {}};
     if (!may_fit(cut, measured.grid, measured.lists)) continue;
     measured.load = sample_.measure(measured.grid, measured.lists);
+    find_shares(triangles, cut.lattice, measured);
     least_ = std::numeric_limits<double>::infinity();
     if (auto dealt = deal(measured); !dealt) return dealt;
     measured.load = {};
+    measured.shares = {};
     grids_.push_back(std::move(measured));
     if (least_ > kEnough * best_) break;
     best_ = std::min(best_, least_);
