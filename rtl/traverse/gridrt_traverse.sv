@@ -163,16 +163,14 @@ module gridrt_traverse #(
 
   // 2: constants in the order dominant axis, b, c.
   logic [2:0][EDGE_W-1:0] s2_edge;
-  logic [2:0][EDGE_W+1:0] s2_edge3;
+  logic [EDGE_W+1:0] s2_edge3;  // dominant axis only
   always_comb begin
     s2_edge  = '0;
     s2_edge3 = '0;
     for (int unsigned a = 0; a < 3; a++) begin
       if (s2_state.axis == 2'(a)) begin
-        for (int unsigned k = 0; k < 3; k++) begin
-          s2_edge[k]  = grid_i.edges[(a+k)%3];
-          s2_edge3[k] = grid_i.edges3[(a+k)%3];
-        end
+        for (int unsigned k = 0; k < 3; k++) s2_edge[k] = grid_i.edges[(a+k)%3];
+        s2_edge3 = grid_i.edges3[a];
       end
     end
   end
@@ -208,7 +206,6 @@ module gridrt_traverse #(
         .s2_rest_i(s2_state.rest[n]),
         .s2_slope_i(s2_state.slope[n]),
         .s2_edge_i(s2_edge[n+1]),
-        .s2_edge3_i(s2_edge3[n+1]),
         .s3_ahead_i(s3_ahead),
         .s5_sample_o(s5_sample[n]),
         .s7_rest_o(s7_rest[n]),
@@ -225,7 +222,7 @@ module gridrt_traverse #(
       .clk_i,
       .valid_i(valid[6:2]),
       .s2_edge_i(s2_edge[0]),
-      .s2_edge3_i(s2_edge3[0]),
+      .s2_edge3_i(s2_edge3),
       .s3_ahead_i(s3_ahead),
       .s5_enter_i(s5_state.enter),
       .s5_slabs_i(s5_state.slabs),
