@@ -64,7 +64,7 @@ function(gridrt_verilated name)
   set(optimise -O2)
   if(ARG_FAST)
     list(APPEND flags --x-assign fast --x-initial fast)
-    set(optimise -O3)
+    set(optimise -O1)  # -O3 is 3 % faster and takes three times as long to compile
   else()
     list(APPEND flags --assert -DGRIDRT_ASSERT ${GRIDRT_ASSERT_WARNINGS})
   endif()

@@ -11,11 +11,14 @@
 
 namespace gridrt {
 
-/// Their names, the default (B = 17, four PEs) first: "b17x4", ...
+/// Their names, the default first: "b17x4" has B = 17 and four PEs. For tests, and in builds with
+/// tests only: "b12x2" has B = 12 and two PEs; "stall" is as b17x4, but its streams pause at random
+/// and its assertions are checked (one that fails ends the program).
 std::vector<std::string_view> sim_boards();
 
 /// Makes a board and powers it up. `waves` names an FST file for all signals, which costs most of
-/// the speed; empty: none. Errors: kUsage for an unknown name, kFile if the file cannot be opened.
+/// the speed and which only b17x4 has; empty: none. Errors: kUsage for an unknown name,
+/// kUnsupported for waves of a board without, kFile if the file cannot be opened.
 Result<std::unique_ptr<SimBoard>> make_sim_board(std::string_view name,
                                                  const std::string& waves = {});
 

@@ -18,6 +18,7 @@ template <class Model>
 class VerilatedBoard final : public SimBoard {
  public:
   VerilatedBoard() : context_(std::make_unique<VerilatedContext>()) {
+    choose_context();
     context_->traceEverOn(true);
     model_ = std::make_unique<Model>(context_.get());
     model_->clk_i = 0;
@@ -27,14 +28,18 @@ class VerilatedBoard final : public SimBoard {
     model_->reg_valid_i = 0;
   }
   ~VerilatedBoard() override {
+    choose_context();
     model_->final();
     if (waves_) waves_->close();
   }
 
-  /// Opens a file for waves; false if that fails, or if the model was made without them. Before
-  /// power_up().
+  /// Whether the model was made with waves.
+  static constexpr bool kHasWaves =
+      requires(Model& model, VerilatedFstC* file) { model.trace(file, 1); };
+
+  /// Opens a file for waves; false if that fails, or without kHasWaves. Before power_up().
   bool trace_to(const std::string& path) {
-    if constexpr (requires(Model& model, VerilatedFstC* file) { model.trace(file, 1); }) {
+    if constexpr (kHasWaves) {
       waves_ = std::make_unique<VerilatedFstC>();
       constexpr int kAllLevels = 99;
       model_->trace(waves_.get(), kAllLevels);
@@ -56,6 +61,7 @@ class VerilatedBoard final : public SimBoard {
 
   RunResult run(std::span<const std::byte> to_board, std::span<std::byte> from_board,
                 const RunLimits& limits, RegisterAccess* access) override {
+    choose_context();
     Model& pins = *model_;
     RunResult moved;
     std::uint64_t quiet = 0;
@@ -96,6 +102,9 @@ class VerilatedBoard final : public SimBoard {
   [[nodiscard]] std::uint64_t clocks() const override { return clocks_; }
 
  private:
+  /// Verilator's library looks some things up in the context of the thread, which is one of several
+  /// boards' and may be gone.
+  void choose_context() { Verilated::threadContextp(context_.get()); }
   void fall() {
     model_->clk_i = 0;
     model_->eval();

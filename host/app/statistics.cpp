@@ -51,8 +51,11 @@ std::string statistics_json(const HostOptions& options, const PreparedScene& pre
   json["version"] = GRIDRT_VERSION;
   json["scene"] = options.scene;
   json["device"] = statistics.device;
-  json["schedule"] =
-      options.schedule.empty() ? default_schedule(statistics.device) : options.schedule;
+  json["schedule"] = nullptr;  // a board has none
+  if (counters.cycles == 0) {
+    json["schedule"] =
+        options.schedule.empty() ? default_schedule(statistics.device) : options.schedule;
+  }
   json["lattice_bits"] = static_cast<int>(header.bits);
   json["grid"] = {grid.x, grid.y, grid.z};
   json["triangles"] = prepared.scene.triangles.size();

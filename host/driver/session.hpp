@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "host/driver/answers.hpp"
@@ -27,6 +28,9 @@ class Session final : public Device {
   Result<DeviceCounters> counters() override;
   Result<std::vector<ExplainEvent>> explain(const Image& image, const Segment& segment) override;
   [[nodiscard]] std::string name() const override { return name_; }
+
+  /// Another name than the device's own, where one kind of device is opened by several.
+  void set_name(std::string name) { name_ = std::move(name); }
   [[nodiscard]] const protocol::CapabilitiesReport& capabilities() const override {
     return capabilities_;
   }

@@ -25,6 +25,7 @@ Result<std::unique_ptr<Device>> open_sim(const DeviceOptions& options) {
   Result<std::unique_ptr<Session>> session =
       Session::open(std::make_unique<SimTransport>(std::move(*board)), options);
   if (!session) return std::unexpected(std::move(session.error()));
+  (*session)->set_name(options.name);
   // A frame that stays unfinished will stay so: the link never pauses within one.
   auto set = set_report((*session)->connection().transport(),
                         protocol::ControlReport{.idle_clocks = kIdleClocks, .log = 0});

@@ -40,7 +40,7 @@ Question ask(int bits, std::uint64_t seed) {
 }
 
 TEST_P(Contract, HitsDoNotDependOnPesGridMappingOrLayout) {
-  const Question q = ask(kDefaultBits, 1);
+  const Question q = ask(bits(), 1);
   std::size_t taken = 0;
   std::size_t refusals = 0;
   for (const int pes : {1, 2, 4, 8}) {
@@ -80,7 +80,7 @@ TEST_P(Contract, HitsDoNotDependOnPesGridMappingOrLayout) {
 }
 
 TEST_P(Contract, HitsDoNotDependOnBatchesThreadsOrFramesInFlight) {
-  const Question q = ask(kDefaultBits, 3);
+  const Question q = ask(bits(), 3);
   ImageOptions options = plain(q.bits);
   std::string refused;
   for (const Layout layout : {Layout::kCompact, Layout::kWide}) {
@@ -124,7 +124,7 @@ TEST_P(Contract, HitsAtOtherLatticeBits) {
 }
 
 TEST_P(Contract, AnyHitAgreesWithClosestHitAndSaysNothingElse) {
-  const Question q = ask(kDefaultBits, 5);
+  const Question q = ask(bits(), 5);
   const auto image = build_image(q.scene, plain());
   ASSERT_TRUE(image);
   std::string refused;
@@ -142,7 +142,7 @@ TEST_P(Contract, AnyHitAgreesWithClosestHitAndSaysNothingElse) {
 }
 
 TEST_P(Contract, AnIgnoredTriangleIsNeverHit) {
-  const Question q = ask(kDefaultBits, 7);
+  const Question q = ask(bits(), 7);
   for (const Layout layout : {Layout::kCompact, Layout::kWide}) {
     ImageOptions options = plain();
     options.layout = layout;
@@ -176,7 +176,7 @@ TEST_P(Contract, AnIgnoredTriangleIsNeverHit) {
 }
 
 TEST_P(Contract, SequenceNumbersRollOver) {
-  const Question q = ask(kDefaultBits, 9);
+  const Question q = ask(bits(), 9);
   DeviceOptions options;
   options.rays_per_frame = 16;
   const auto device = open(options);
@@ -194,7 +194,7 @@ TEST_P(Contract, SequenceNumbersRollOver) {
 }
 
 TEST_P(Contract, ManyCallsOnOneDeviceAnswerAsOne) {
-  const Question q = ask(kDefaultBits, 11);
+  const Question q = ask(bits(), 11);
   const auto image = build_image(q.scene, plain());
   const auto device = open();
   ASSERT_TRUE(image && device);
@@ -212,7 +212,7 @@ TEST_P(Contract, ManyCallsOnOneDeviceAnswerAsOne) {
 }
 
 TEST_P(Contract, CountersArePlausible) {
-  const Question q = ask(kDefaultBits, 13);
+  const Question q = ask(bits(), 13);
   const auto image = build_image(q.scene, plain());
   const auto device = open();
   ASSERT_TRUE(image && device);

@@ -8,3 +8,11 @@ target_link_libraries(contract PRIVATE gridrt_awkward gridrt_flags GTest::gtest_
 gtest_discover_tests(contract DISCOVERY_TIMEOUT 60 TEST_FILTER "-*/sim*")
 gtest_discover_tests(contract DISCOVERY_TIMEOUT 60 TEST_FILTER "*/sim*"
   PROPERTIES LABELS "contract;rtl" TIMEOUT 900 ENVIRONMENT GRIDRT_CONTRACT_RAYS=300)
+if(TARGET gridrt_sim)
+  # Two PEs of 12 lattice bits; four of 17 whose streams pause at random, assertions on.
+  foreach(board b12x2 stall)
+    add_test(NAME sim.contract_${board} COMMAND contract)
+    set_tests_properties(sim.contract_${board} PROPERTIES LABELS "contract;rtl" TIMEOUT 900
+      ENVIRONMENT "GRIDRT_DEVICES=sim:${board};GRIDRT_CONTRACT_RAYS=100")
+  endforeach()
+endif()

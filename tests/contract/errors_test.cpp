@@ -19,9 +19,9 @@ TEST_P(Contract, RaysBeforeAnImageAreAnError) {
   const auto image = build_image(scene, plain());
   ASSERT_TRUE(image);
   if (!loads(*device, *image)) return;
-  const auto segments = awkward_segments(scene, kDefaultBits, 21);
+  const auto segments = awkward_segments(scene, bits(), 21);
   expect_same(trace(*device, segments, Query::kClosestHit),
-              reference(scene, kDefaultBits, segments, Query::kClosestHit), "after an error");
+              reference(scene, bits(), segments, Query::kClosestHit), "after an error");
 }
 
 TEST_P(Contract, AsManyHitsAsSegmentsAreAskedFor) {
@@ -66,8 +66,8 @@ TEST_P(Contract, ADamagedImageIsRefusedAndTheNextOneLoads) {
   const Scene scene = awkward_scene(24);
   const auto image = build_image(scene, plain());
   ASSERT_TRUE(image);
-  const auto segments = awkward_segments(scene, kDefaultBits, 25);
-  const auto expected = reference(scene, kDefaultBits, segments, Query::kClosestHit);
+  const auto segments = awkward_segments(scene, bits(), 25);
+  const auto expected = reference(scene, bits(), segments, Query::kClosestHit);
   const auto device = open();
   ASSERT_TRUE(device);
   if (!loads(*device, *image)) return;
@@ -87,13 +87,13 @@ TEST_P(Contract, ASecondImageReplacesTheFirst) {
   ASSERT_TRUE(device);
   for (const std::uint64_t seed : {30U, 31U, 30U, 32U}) {
     const Scene scene = awkward_scene(seed);
-    const auto image = build_image(scene, plain(12 + static_cast<int>(seed % 4)));
+    const auto image = build_image(scene, plain(bits() - static_cast<int>(seed % 4)));
     ASSERT_TRUE(image);
     if (!loads(*device, *image)) return;
-    const int bits = image->header.bits;
-    const auto segments = awkward_segments(scene, bits, seed);
+    const int image_bits = image->header.bits;
+    const auto segments = awkward_segments(scene, image_bits, seed);
     expect_same(trace(*device, segments, Query::kClosestHit),
-                reference(scene, bits, segments, Query::kClosestHit), "after a reload");
+                reference(scene, image_bits, segments, Query::kClosestHit), "after a reload");
   }
 }
 

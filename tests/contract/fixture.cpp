@@ -37,9 +37,14 @@ std::unique_ptr<Device> Contract::open(DeviceOptions options) {
   return std::move(*device);
 }
 
+int Contract::bits() {
+  const auto device = open();
+  return device ? std::min<int>(kDefaultBits, device->capabilities().max_bits) : kDefaultBits;
+}
+
 ImageOptions Contract::plain(int bits, int pes) {
   ImageOptions options;
-  options.bits = bits;
+  options.bits = bits == 0 ? Contract::bits() : bits;
   options.with_scene = false;
   const auto device = open();
   if (!device) return options;

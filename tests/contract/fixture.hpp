@@ -27,9 +27,12 @@ class Contract : public testing::TestWithParam<std::string> {
   /// The device under test; a failure fails the test.
   static std::unique_ptr<Device> open(DeviceOptions options = {});
 
-  /// Image options that fit the device under test, without the scene section; pes 0: four, or as
-  /// many as it has.
-  static ImageOptions plain(int bits = kDefaultBits, int pes = 0);
+  /// The default lattice bits, or as many as the device under test has.
+  static int bits();
+
+  /// Image options that fit the device under test, without the scene section; bits 0: bits();
+  /// pes 0: four, or as many as it has.
+  static ImageOptions plain(int bits = 0, int pes = 0);
 
   /// True if the device takes the image. One that goes beyond it (is_beyond) marks the test as
   /// skipped; any other refusal fails it. On false the test returns.

@@ -16,7 +16,7 @@ using protocol::SectionKind;
 
 TEST_P(Contract, TheChunksOfASceneAnswerAsOne) {
   const Scene scene = awkward_scene(40);
-  const auto segments = awkward_segments(scene, kDefaultBits, 41);
+  const auto segments = awkward_segments(scene, bits(), 41);
   ImageOptions options = plain();
   const MemorySizes small{
       .triangles = 60, .vertices = 80, .references = 150, .cells = 60, .blocks = 64};
@@ -28,7 +28,7 @@ TEST_P(Contract, TheChunksOfASceneAnswerAsOne) {
   auto device = load_images(open(), std::make_shared<const SceneImages>(std::move(*images)));
   ASSERT_TRUE(device) << device.error().message;
   for (const Query query : {Query::kClosestHit, Query::kAnyHit, Query::kClosestHit}) {
-    expect_same(trace(**device, segments, query), reference(scene, kDefaultBits, segments, query),
+    expect_same(trace(**device, segments, query), reference(scene, bits(), segments, query),
                 "in chunks");
     if (HasFatalFailure()) return;
   }
@@ -40,12 +40,13 @@ TEST_P(Contract, TheChunksOfASceneAnswerAsOne) {
   ASSERT_TRUE(whole);
   ASSERT_TRUE((*device)->load(*whole));
   expect_same(trace(**device, segments, Query::kClosestHit),
-              reference(scene, kDefaultBits, segments, Query::kClosestHit), "after chunks");
+              reference(scene, bits(), segments, Query::kClosestHit), "after chunks");
 }
 
 /// As many triangles as a PE holds: small ones all over a cube, with three vertices each as long as
-/// there is room for vertices, then copies of them.
-Scene full_scene(const MemorySizes& memory) {
+/// there is room for vertices, then copies of them. None is degenerate on a lattice of `bits`.
+Scene full_scene(const MemorySizes& memory, int bits) {
+  const double reach = bits < kDefaultBits ? 0.012 : 0.003;
   adversarial::Random random(42);
   Scene scene;
   const std::uint32_t own = std::min(memory.triangles, memory.vertices / 3);
@@ -53,7 +54,7 @@ Scene full_scene(const MemorySizes& memory) {
     const glm::dvec3 place = random.in_box(glm::dvec3{0.0}, glm::dvec3{1.0});
     std::array<glm::vec3, 3> corners{};
     for (glm::vec3& c : corners) {
-      c = glm::vec3{place + random.in_box(glm::dvec3{-0.003}, glm::dvec3{0.003})};
+      c = glm::vec3{place + random.in_box(glm::dvec3{-reach}, glm::dvec3{reach})};
     }
     adversarial::add_triangle(scene, corners[0], corners[1], corners[2]);
   }
@@ -155,12 +156,11 @@ TEST_P(Contract, FullMemoriesAnswerAndOneEntryMoreIsRefusedBeforeAnythingIsSent)
   const MemorySizes memory = memory_sizes(device->capabilities());
   if (memory.triangles > 1000000) GTEST_SKIP() << "this device has no memories to fill";
   // With one PE the triangles fill its memory, too.
-  const Scene scene = full_scene(memory);
-  const int bits = std::min<int>(kDefaultBits, device->capabilities().max_bits);
-  const auto segments = awkward_segments(scene, bits, 43);
-  const auto expected = reference(scene, bits, segments, Query::kClosestHit);
+  const Scene scene = full_scene(memory, bits());
+  const auto segments = awkward_segments(scene, bits(), 43);
+  const auto expected = reference(scene, bits(), segments, Query::kClosestHit);
   for (const int pes : {1, int{device->capabilities().pes}}) {
-    ImageOptions options = plain(bits, pes);
+    ImageOptions options = plain(bits(), pes);
     options.grid = finest_cube(memory);
     auto image = build_image(scene, options);
     ASSERT_TRUE(image) << image.error().message;

@@ -36,13 +36,13 @@ class SimulatedBoard(ProgramTest):
     def test_the_life_of_a_ray_ends_with_the_answer(self):
         self.host("builtin:teapot", *SMALL, "--device", "sim", "--hits", "a.npy")
         lives = {}
-        for device in ("seq", "sim"):
+        for device in ("seq-board", "sim"):  # cut for the same memories
             told = self.host("builtin:teapot", *SMALL, "--device", device, "--explain", "40,30")
             lives[device] = told.stdout.splitlines()
-        self.assertEqual(lives["sim"][-1], lives["seq"][-1])  # the same commit, key included
+        self.assertEqual(lives["sim"][-1], lives["seq-board"][-1])  # the same commit, key included
         kinds = {line.split()[0] for line in lives["sim"]}
         self.assertLessEqual({"step", "voxel", "test", "feedback", "interrupt", "commit"}, kinds)
-        met = {line for line in lives["seq"] if line.startswith("voxel") and "PE" in line}
+        met = {line for line in lives["seq-board"] if line.startswith("voxel") and "PE" in line}
         seen = {line for line in lives["sim"] if line.startswith("voxel")}
         self.assertLessEqual(met, seen)  # the board runs ahead, so it may have seen more
 
