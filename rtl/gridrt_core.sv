@@ -6,9 +6,9 @@ module gridrt_core #(
     parameter int unsigned PES = 4,  // 1, 2 or 4
     parameter int unsigned TUS = 4,  // of the engine, as those below: gridrt_engine.sv
     parameter int unsigned SLOTS = 48,
-    parameter int unsigned ROB = 128,
+    parameter int unsigned ROB = 256,
     parameter int unsigned QUEUE = 16,
-    parameter int unsigned AHEAD = 4,
+    parameter int unsigned AHEAD = 2,
     parameter int unsigned BLOCKS = 4096,
     parameter int unsigned CELLS = 8192,
     parameter int unsigned REFS = 10240,

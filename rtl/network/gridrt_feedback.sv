@@ -5,8 +5,8 @@ module gridrt_feedback #(
     parameter int unsigned TUS = 4,
     parameter int unsigned EXPS = 2,
     parameter int unsigned PES = 4,
-    parameter int unsigned AHEAD = 4,
-    parameter int unsigned ROB = 128,
+    parameter int unsigned AHEAD = 2,
+    parameter int unsigned ROB = 256,
     parameter bit FEEDBACK = 1'b1,  // 0: a ray commits with its first hit (wrong, for a test)
     localparam int unsigned ENTRY_W = $clog2(ROB),
     localparam int unsigned SLOT_W = gridrt_pkg::SLOT_W

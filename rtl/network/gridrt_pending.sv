@@ -5,7 +5,7 @@ module gridrt_pending #(
     parameter int unsigned SLOTS = 48,
     parameter int unsigned TUS   = 4,
     parameter int unsigned ENDS  = 6,  // ports that end tasks, at most 6
-    parameter int unsigned AHEAD = 4    // 1, 2, 4, 8 or 16
+    parameter int unsigned AHEAD = 2    // 1, 2, 4, 8 or 16
 ) (
     input  logic clk_i,
     input  logic rst_ni,

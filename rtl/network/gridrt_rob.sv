@@ -3,7 +3,7 @@
 // round through the memory in which it was written, so that the head knows an answer of this round
 // from one of the round before. After reset the memory is filled first.
 module gridrt_rob #(
-    parameter int unsigned ROB = 128,  // entries, a power of two
+    parameter int unsigned ROB = 256,  // entries, a power of two
     localparam int unsigned ENTRY_W = $clog2(ROB)
 ) (
     input  logic                        clk_i,

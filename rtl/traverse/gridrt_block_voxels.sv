@@ -14,43 +14,41 @@ module gridrt_block_voxels (
     output logic [7:0]          s7_met_o,      // bits x + 2 y + 4 z, not mirrored
     output logic [7:0][5:0]     s7_halves_o    // bits 2 axis + half, not mirrored
 );
-  // Clock 5: halves of this block by half-slab, then turned back from mirrored to actual ones.
-  logic [3:0] holds;
+  // Clock 5: halves of this block by half-slab, turned back from mirrored to actual ones. The samples
+  // are turned, not what comes of them, which is wider.
+  logic [3:0] holds, actual_holds;
   logic [2:0] neg;  // dominant, b, c
-  logic [1:0][3:0][3:0] halves;  // lateral axis, half-slab, half
+  logic [1:0][4:0][2:0] sample;  // bit 2: outside of this block
+  logic [1:0][4:0][3:0] at;  // lateral axis, face, half
+  logic [1:0][3:0][3:0] actual;  // lateral axis, half-slab, half
   logic [1:0][3:0][1:0] blocks;  // lateral axis, half-slab, block
   logic [3:1] touched;
-  logic [3:0] actual_holds;
-  logic [1:0][3:0][3:0] actual;
   always_comb begin
     case (s5_axis_i)
       2'd0: neg = s5_neg_i;
       2'd1: neg = {s5_neg_i[0], s5_neg_i[2:1]};
       default: neg = {s5_neg_i[1:0], s5_neg_i[2]};
     endcase
+    for (int unsigned n = 0; n < 2; n++) begin
+      for (int unsigned k = 0; k < 5; k++) begin
+        sample[n][k] = (neg[0] ? s5_sample_i[n][4-k] : s5_sample_i[n][k]) ^
+                       {s5_sub_i[n], {2{neg[n+1]}}};
+        for (int unsigned h = 0; h < 4; h++) at[n][k][h] = sample[n][k] == 3'(h);
+      end
+      for (int unsigned i = 0; i < 4; i++) actual[n][i] = at[n][i] | at[n][i+1];
+      for (int unsigned i = 0; i < 4; i++) begin
+        blocks[n][i][0] = !(s5_sample_i[n][i][2] && s5_sample_i[n][i+1][2]);
+        blocks[n][i][1] = s5_sample_i[n][i][2] || s5_sample_i[n][i+1][2];
+      end
+    end
     touched = '0;
-    halves = '0;
-    blocks = '0;
     for (int unsigned i = 0; i < 4; i++) begin
       holds[i] = 2'(i) >= s5_first_i && 2'(i) <= s5_last_i;
-      for (int unsigned n = 0; n < 2; n++) begin
-        for (int unsigned k = 0; k < 2; k++) begin
-          if (s5_sample_i[n][i+k][2] == s5_sub_i[n]) halves[n][i][s5_sample_i[n][i+k][1:0]] = 1'b1;
-          blocks[n][i][s5_sample_i[n][i+k][2]] = 1'b1;
-        end
-      end
       for (int unsigned s = 1; s < 4; s++) begin
         if (holds[i] && blocks[0][i][s%2] && blocks[1][i][s/2]) touched[s] = 1'b1;
       end
     end
-    for (int unsigned i = 0; i < 4; i++) begin
-      actual_holds[i] = neg[0] ? holds[3-i] : holds[i];
-      for (int unsigned n = 0; n < 2; n++) begin
-        for (int unsigned h = 0; h < 4; h++) begin
-          actual[n][i][h] = halves[n][neg[0] ? 3 - i : i][neg[n+1] ? 3 - h : h];
-        end
-      end
-    end
+    for (int unsigned i = 0; i < 4; i++) actual_holds[i] = neg[0] ? holds[3-i] : holds[i];
   end
   logic [1:0] s6_axis;
   logic [3:0] s6_holds;

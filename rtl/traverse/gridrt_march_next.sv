@@ -3,7 +3,7 @@
 module gridrt_march_next (
     input  logic                                     clk_i,
     input  logic [4:0]                               valid_i,      // of clocks 7 to 3
-    input  logic [2:0][gridrt_pkg::BLOCK_W-1:0]      stride_i,     // of the grid's x, y, z
+    input  logic [2:1][gridrt_pkg::BLOCK_W-1:0]      stride_i,     // of the grid's y and z; x: 1
     input  logic [1:0]                               s3_axis_i,
     input  logic [2:0]                               s3_neg_i,
     input  logic [2:0]                               s5_ahead_i,   // block-slabs on, 1 .. 7
@@ -25,30 +25,37 @@ module gridrt_march_next (
   localparam int unsigned REST_W = gridrt_state_pkg::REST_W;
   localparam int unsigned SLABS_W = gridrt_state_pkg::SLABS_W;
 
-  // Strides in the order dominant axis, b, c; negative on mirrored axes.
-  logic [2:0][BLOCK_W-1:0] s4_stride, s5_stride, s5_stride3, s6_stride, s6_stride3, s7_stride,
-                           s7_stride3;
-  logic [BLOCK_W-1:0] s6_main, s7_main, s8_main;
+  // Strides in the order dominant axis, b, c; taken away on mirrored axes.
+  logic [2:0][BLOCK_W-1:0] stride, s4_stride, s5_stride;
+  logic [2:1][BLOCK_W-1:0] s6_stride, s7_stride;
+  assign stride = {stride_i, BLOCK_W'(1)};
+  logic [2:0] s4_neg, s5_neg, s6_neg, s7_neg, s8_neg;
+  logic [BLOCK_W-1:0] s5_main, s6_main, s7_main, s8_main;
   logic [1:0][BLOCK_W-1:0] s7_side, s8_side;
-  logic [1:0][2:0] s7_off, s8_off;  // blocks passed sideways
+  logic [1:0][2:0] s7_off, s7_steps, s8_off;  // blocks passed sideways; strides sideways
   logic [1:0][4:0] s7_half, s8_half;
-  function automatic logic [BLOCK_W-1:0] times(logic [2:0] factor, logic [BLOCK_W-1:0] stride,
-                                               logic [BLOCK_W-1:0] stride3);
-    case (factor[1:0])
-      2'd0: times = '0;
-      2'd1: times = stride;
-      2'd2: times = stride << 1;
-      default: times = stride3;
-    endcase
-    if (factor[2]) times = times + (stride << 2);
-  endfunction
   always_comb begin
     for (int unsigned n = 0; n < 2; n++) begin
       s7_half[n] = {{2{s7_half_i[n][2]}}, s7_half_i[n]} + s7_halves_i[n];
       s7_off[n] = s7_half[n][4:2];
-      if (s7_on_i) s7_side[n] = times(s7_off[n], s7_stride[n+1], s7_stride3[n+1]);
-      else s7_side[n] = s7_sub_i[n] ? s7_stride[n+1] : '0;
+      s7_steps[n] = s7_on_i ? s7_off[n] : {2'b00, s7_sub_i[n]};
     end
+  end
+  gridrt_times #(
+      .WIDTH(BLOCK_W)
+  ) i_main (
+      .factor_i(s5_ahead_i),
+      .value_i(s5_stride[0]),
+      .product_o(s5_main)
+  );
+  for (genvar n = 0; n < 2; n++) begin : gen_side
+    gridrt_times #(
+        .WIDTH(BLOCK_W)
+    ) i_side (
+        .factor_i(s7_steps[n]),
+        .value_i(s7_stride[n+1]),
+        .product_o(s7_side[n])
+    );
   end
   logic s8_on;
   logic [1:0][REST_W-1:0] s8_rest;
@@ -59,29 +66,31 @@ module gridrt_march_next (
       for (int unsigned a = 0; a < 3; a++) begin
         for (int unsigned k = 0; k < 3; k++) begin
           if (s3_axis_i == 2'(a)) begin
-            s4_stride[k] <= s3_neg_i[(a+k)%3] ? -stride_i[(a+k)%3] : stride_i[(a+k)%3];
+            s4_stride[k] <= stride[(a+k)%3];
+            s4_neg[k] <= s3_neg_i[(a+k)%3];
           end
         end
       end
     end
     if (valid_i[1]) begin
       s5_stride <= s4_stride;
-      for (int unsigned k = 0; k < 3; k++) s5_stride3[k] <= s4_stride[k] + (s4_stride[k] << 1);
+      s5_neg <= s4_neg;
     end
     if (valid_i[2]) begin
-      s6_stride <= s5_stride;
-      s6_stride3 <= s5_stride3;
-      s6_main <= times(s5_ahead_i, s5_stride[0], s5_stride3[0]);
+      s6_stride <= s5_stride[2:1];
+      s6_neg <= s5_neg;
+      s6_main <= s5_main;
       s6_slabs <= s5_slabs_i - SLABS_W'(s5_ahead_i);
     end
     if (valid_i[3]) begin
       s7_stride <= s6_stride;
-      s7_stride3 <= s6_stride3;
+      s7_neg <= s6_neg;
       s7_main <= s6_main;
       s7_slabs <= s6_slabs;
     end
     if (valid_i[4]) begin
       s8_on <= s7_on_i;
+      s8_neg <= s7_neg;
       s8_main <= s7_on_i ? s7_main : '0;
       s8_side <= s7_side;
       s8_off <= s7_off;
@@ -92,8 +101,20 @@ module gridrt_march_next (
       s8_sub_o <= s7_sub_i;
     end
   end
+  logic [3:0][BLOCK_W-1:0] s8_look;
+  assign s8_look[0] = s8_state_i.block;
+  for (genvar k = 0; k < 3; k++) begin : gen_look
+    gridrt_add_sub #(
+        .WIDTH(BLOCK_W)
+    ) i_look (
+        .sub_i(s8_neg[k]),
+        .a_i  (s8_look[k]),
+        .b_i  ((k == 0) ? s8_main : s8_side[(k+1)%2]),
+        .sum_o(s8_look[k+1])
+    );
+  end
+  assign s8_look_o = s8_look[3];
   always_comb begin
-    s8_look_o = s8_state_i.block + s8_main + s8_side[0] + s8_side[1];
     s8_next_o = s8_state_i;
     if (s8_on) begin
       s8_next_o.block = s8_look_o;

@@ -5,7 +5,6 @@ module gridrt_march_way (
     input  logic                                 clk_i,
     input  logic [4:0]                           valid_i,          // of clocks 6 to 2
     input  logic [gridrt_state_pkg::EDGE_W-1:0]  s2_edge_i,        // of a voxel
-    input  logic [gridrt_state_pkg::EDGE_W+1:0]  s2_edge3_i,       // three times that
     input  logic [2:0]                           s3_ahead_i,       // block-slabs on, 1 .. 7
     input  logic [gridrt_pkg::DIST_W:0]          s5_enter_i,       // of the block
     input  logic [gridrt_state_pkg::SLABS_W-1:0] s5_slabs_i,       // left after this one
@@ -21,35 +20,29 @@ module gridrt_march_way (
   localparam int unsigned SLABS_W = gridrt_state_pkg::SLABS_W;
 
   logic [EDGE_W-1:0] s3_edge, s4_edge, s5_edge;
-  logic [EDGE_W+1:0] s3_edge3, s4_edge3, few_edges;
   logic [2:0] s4_ahead;
-  logic [EDGE_W+2:0] s5_way;  // `ahead` edges
+  logic [EDGE_W+2:0] s4_way, s5_way;  // `ahead` edges
   logic [DIST_W:0] s5_far;
   logic [DIST_W-1:0] s6_far_enter;
   logic s6_over;
-  always_comb begin
-    case (s4_ahead[1:0])
-      2'd0: few_edges = '0;
-      2'd1: few_edges = {2'b00, s4_edge};
-      2'd2: few_edges = {1'b0, s4_edge, 1'b0};
-      default: few_edges = s4_edge3;
-    endcase
-    s5_far = s5_enter_i + {1'b0, s5_edge};
-  end
+  gridrt_times #(
+      .WIDTH(EDGE_W + 3)
+  ) i_way (
+      .factor_i(s4_ahead),
+      .value_i({3'b000, s4_edge}),
+      .product_o(s4_way)
+  );
+  assign s5_far = s5_enter_i + {1'b0, s5_edge};
   always_ff @(posedge clk_i) begin
-    if (valid_i[0]) begin
-      s3_edge  <= s2_edge_i;
-      s3_edge3 <= s2_edge3_i;
-    end
+    if (valid_i[0]) s3_edge <= s2_edge_i;
     if (valid_i[1]) begin
-      s4_edge  <= s3_edge;
-      s4_edge3 <= s3_edge3;
+      s4_edge <= s3_edge;
       s4_ahead <= s3_ahead_i;
     end
     if (valid_i[2]) begin
       s5_edge <= s4_edge;
       s5_ahead_o <= s4_ahead;
-      s5_way <= {1'b0, few_edges} + (s4_ahead[2] ? {1'b0, s4_edge, 2'b00} : '0);
+      s5_way <= s4_way;
     end
     if (valid_i[3]) begin
       // A carry out of it belongs to a slab behind the last one.

@@ -163,14 +163,11 @@ module gridrt_traverse #(
 
   // 2: constants in the order dominant axis, b, c.
   logic [2:0][EDGE_W-1:0] s2_edge;
-  logic [EDGE_W+1:0] s2_edge3;  // dominant axis only
   always_comb begin
-    s2_edge  = '0;
-    s2_edge3 = '0;
+    s2_edge = '0;
     for (int unsigned a = 0; a < 3; a++) begin
       if (s2_state.axis == 2'(a)) begin
         for (int unsigned k = 0; k < 3; k++) s2_edge[k] = grid_i.edges[(a+k)%3];
-        s2_edge3 = grid_i.edges3[a];
       end
     end
   end
@@ -222,7 +219,6 @@ module gridrt_traverse #(
       .clk_i,
       .valid_i(valid[6:2]),
       .s2_edge_i(s2_edge[0]),
-      .s2_edge3_i(s2_edge3),
       .s3_ahead_i(s3_ahead),
       .s5_enter_i(s5_state.enter),
       .s5_slabs_i(s5_state.slabs),
@@ -339,7 +335,7 @@ module gridrt_traverse #(
   gridrt_march_next i_next (
       .clk_i,
       .valid_i(valid[7:3]),
-      .stride_i(grid_i.stride),
+      .stride_i(grid_i.stride[2:1]),
       .s3_axis_i(s3_state.axis),
       .s3_neg_i(s3_state.neg),
       .s5_ahead_i(s5_ahead),

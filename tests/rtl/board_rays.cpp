@@ -6,6 +6,7 @@
 #include <memory>
 #include <numbers>
 #include <numeric>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
@@ -68,8 +69,8 @@ std::vector<std::size_t> tile_order(int width, int height) {
   return order;
 }
 
-/// Leaves out misses, which no device is sent, and puts the others in order.
-RayWave arrange(const RayWave& wave, std::string name, const WaveOptions& options) {
+/// The rays of one wave, in the order in which they go to a device; misses are sent to none.
+std::vector<std::size_t> order_of(const RayWave& wave, const WaveOptions& options) {
   std::vector<std::size_t> order(wave.segments.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   const auto pixels =
@@ -78,19 +79,33 @@ RayWave arrange(const RayWave& wave, std::string name, const WaveOptions& option
     order = tile_order(options.width, options.height);
   }
   std::erase_if(order, [&](std::size_t i) { return wave.segments[i].is_miss(); });
-  if (options.order == RayOrder::kSpread) order = spread(order);
-  if (options.most != 0 && options.order == RayOrder::kSpread) {
-    order.resize(std::min<std::size_t>(order.size(), options.most));
-  } else if (options.most != 0 && options.most < order.size()) {
-    // A run from the middle: one that leaves rays out would be another order.
-    const std::size_t first = (order.size() - options.most) / 2;
-    order = {order.begin() + static_cast<std::ptrdiff_t>(first),
-             order.begin() + static_cast<std::ptrdiff_t>(first + options.most)};
+  return options.order == RayOrder::kSpread ? spread(order) : order;
+}
+
+/// Waves one after the other as one, cut to `most` rays.
+RayWave arrange(std::span<const RayWave> waves, std::string name, const WaveOptions& options) {
+  std::vector<std::vector<std::size_t>> orders;
+  std::size_t all = 0;
+  for (const RayWave& wave : waves) {
+    orders.push_back(order_of(wave, options));
+    all += orders.back().size();
   }
-  RayWave out{std::move(name), wave.query, {}, {}};
-  for (const std::size_t i : order) {
-    out.segments.push_back(wave.segments[i]);
-    out.answers.push_back(wave.answers[i]);
+  RayWave out;
+  out.name = std::move(name);
+  for (std::size_t w = 0; w < waves.size(); ++w) {
+    std::span<const std::size_t> order = orders[w];
+    out.query = waves[w].query;
+    if (options.most != 0 && options.most < all) {
+      const std::size_t count = order.size() * options.most / all;
+      // In the spread order any run will do; in another one a ray left out would change the order,
+      // so that the run comes from the middle.
+      const bool any = options.order == RayOrder::kSpread;
+      order = order.subspan(any ? 0 : (order.size() - count) / 2, count);
+    }
+    for (const std::size_t i : order) {
+      out.segments.push_back(waves[w].segments[i]);
+      out.answers.push_back(waves[w].answers[i]);
+    }
   }
   return out;
 }
@@ -213,20 +228,20 @@ Result<std::vector<RayWave>> make_waves(const Scene& scene, const WaveOptions& o
     if (!film) return std::unexpected(film.error());
     // Primary rays, shadow rays of each light, mirror rays, and what these cast.
     const std::vector<RayWave> traced = recorder.take();
-    bool mirror = false;
-    for (std::size_t i = 0; i < traced.size() && !mirror; ++i) {
-      const bool shadow = traced[i].query == Query::kAnyHit;
-      mirror = i > 0 && !shadow;
-      const char* kind = i == 0 ? "primary" : (shadow ? "shadow" : "mirror");
-      waves.push_back(arrange(traced[i], fmt::format("{} {}", kind, view), options));
-    }
+    std::size_t mirror = 1;
+    while (mirror < traced.size() && traced[mirror].query == Query::kAnyHit) ++mirror;
+    waves.push_back(arrange({traced.data(), 1}, fmt::format("primary {}", view), options));
+    waves.push_back(
+        arrange({traced.data() + 1, mirror - 1}, fmt::format("shadow {}", view), options));
+    if (mirror == traced.size()) continue;
+    waves.push_back(arrange({traced.data() + mirror, 1}, fmt::format("mirror {}", view), options));
   }
   const std::vector<Segment> random = random_segments(lattice.box());
   std::vector<Hit> hits(random.size());
   if (auto done = recorder.trace(random, Query::kClosestHit, hits); !done) {
     return std::unexpected(done.error());
   }
-  waves.push_back(arrange(recorder.take().front(), "random 0", options));
+  waves.push_back(arrange(recorder.take(), "random 0", options));
   return waves;
 }
 

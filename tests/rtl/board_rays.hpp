@@ -41,7 +41,7 @@ struct WaveOptions {
 /// `share` of the picture's width or height.
 Camera fill_view(const Scene& scene, const glm::dvec3& toward, int width, int height, double share);
 
-/// For each view primary rays, a shadow ray for each light from what they hit, and a mirror ray;
+/// For each view primary rays, shadow rays from what they hit (light after light), and mirror rays;
 /// then random rays through the box. The views lie around the scene, the object fills 95 % of them.
 Result<std::vector<RayWave>> make_waves(const Scene& scene, const WaveOptions& options);
 
