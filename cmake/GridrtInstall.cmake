@@ -14,6 +14,9 @@ install(TARGETS ${libraries} gridrt EXPORT GridRTTargets)
 install(EXPORT GridRTTargets NAMESPACE GridRT::
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/GridRT)
 install(TARGETS gridrt-host gridrt-image)
+if(GRIDRT_BUILD_MPI)
+  install(TARGETS gridrt-rank)
+endif()
 
 install(DIRECTORY hal host DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/gridrt
         FILES_MATCHING PATTERN "*.hpp" PATTERN "app" EXCLUDE)

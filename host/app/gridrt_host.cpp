@@ -1,6 +1,9 @@
 #include "host/app/exit_code.hpp"
 #include "host/app/host_program.hpp"
+#include "host/mpi/ranks.hpp"
 
 int main(int argc, char** argv) {
+  const gridrt::Ranks ranks;
+  if (ranks.serves()) return ranks.serve();
   return gridrt::run_program("gridrt-host", gridrt::run_host, argc, argv);
 }

@@ -32,12 +32,13 @@ enum class Query { kClosestHit, kAnyHit };
 
 /// How to open a device and talk to it.
 struct DeviceOptions {
-  std::string name = "auto";  ///< auto, seq, omp, sim; usb[:SERIAL], mpi when built in
+  std::string name = "auto";  ///< auto, seq, omp, mpi, sim; usb[:SERIAL] when built in
   std::string schedule = {};  ///< of software PEs: rays, pes or paper; empty: the
                               ///< device's own (omp: rays, mpi: pes)
   /// Of omp's schedule rays: plain (as seq), or a kind of vectors (host/pe/ray_stream.hpp) such as
   /// baseline, sse4, avx2 and avx512; empty: the widest that this processor has.
   std::string simd = {};
+  int ranks = 0;                       ///< of mpi, started alone; 0: four
   int threads = 0;                     ///< of omp; 0: all cores (paper: one for each PE)
   std::size_t rays_per_frame = 32768;  ///< batch size on the link, >= 1
   int frames_in_flight = 4;            ///< >= 1

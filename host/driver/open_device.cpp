@@ -9,6 +9,7 @@
 #include "host/driver/device.hpp"
 #include "host/driver/session.hpp"
 #include "host/driver/sim_device.hpp"
+#include "host/mpi/connect.hpp"
 #include "host/pe/ray_stream.hpp"
 #include "host/pe/software_device.hpp"
 
@@ -17,21 +18,38 @@ namespace {
 
 constexpr const char* kBoardInSoftware = "seq-board";
 
-Result<std::unique_ptr<Device>> open_software(const DeviceOptions& options,
-                                              const ScheduleOptions& schedule) {
-  SoftwareDeviceOptions software{.name = options.name, .schedule = schedule};
-  if (options.name == kBoardInSoftware) software.capabilities = board_capabilities();
-  if (options.capabilities) software.capabilities = *options.capabilities;
-  auto transport =
-      std::make_unique<LoopbackTransport>(std::make_unique<SoftwareDevice>(std::move(software)));
+Result<std::unique_ptr<Device>> open_session(std::unique_ptr<Transport> transport,
+                                             const DeviceOptions& options) {
   Result<std::unique_ptr<Session>> session = Session::open(std::move(transport), options);
   if (!session) return std::unexpected(std::move(session.error()));
   return std::unique_ptr<Device>(std::move(*session));
 }
 
+Result<std::unique_ptr<Device>> open_software(const DeviceOptions& options,
+                                              const ScheduleOptions& schedule) {
+  SoftwareDeviceOptions software{.name = options.name, .schedule = schedule};
+  if (options.name == kBoardInSoftware) software.capabilities = board_capabilities();
+  if (options.capabilities) software.capabilities = *options.capabilities;
+  return open_session(
+      std::make_unique<LoopbackTransport>(std::make_unique<SoftwareDevice>(std::move(software))),
+      options);
+}
+
+Result<std::unique_ptr<Device>> open_ranks(const DeviceOptions& options,
+                                           const ScheduleOptions& schedule) {
+  RankOptions ranks;
+  ranks.schedule = schedule;
+  ranks.capabilities = options.capabilities.value_or(software_capabilities());
+  ranks.silence = std::chrono::milliseconds(std::max(1, options.timeout_ms));
+  ranks.ranks = options.ranks;
+  Result<std::unique_ptr<Transport>> transport = connect_ranks(ranks);
+  if (!transport) return std::unexpected(std::move(transport.error()));
+  return open_session(std::move(*transport), options);
+}
+
 /// Devices that the plan names and this build does not have yet.
 bool is_planned(const std::string& name) {
-  return name == "mpi" || name == "usb" || name.starts_with("usb:");
+  return (name == "mpi" && !mpi_is_built_in()) || name == "usb" || name.starts_with("usb:");
 }
 
 /// The schedule of a software device. Threads are for `omp` to choose.
@@ -48,6 +66,11 @@ Result<ScheduleOptions> choose_schedule(const DeviceOptions& options) {
     return fail(ErrorKind::kUsage,
                 fmt::format("device 'seq' has one thread and no schedule '{}'", name),
                 "use --device omp or mpi, or leave --schedule out");
+  }
+  if (options.name == "mpi" && *known == Schedule::kRays) {
+    return fail(ErrorKind::kUsage,
+                "device 'mpi' has no schedule 'rays': a rank has its own PEs only",
+                "use --schedule pes or paper, or --device omp");
   }
   out.schedule = *known;
   out.interrupt = options.pes_interrupt;
@@ -78,13 +101,14 @@ bool is_sim(std::string_view device) { return device == "sim" || device.starts_w
 
 std::vector<std::string> built_in_devices() {
   std::vector<std::string> names{"seq", "omp"};
+  if (mpi_is_built_in()) names.emplace_back("mpi");
   if (has_sim()) names.emplace_back("sim");
   return names;
 }
 
 Result<std::unique_ptr<Device>> open_device(const DeviceOptions& options) {
   DeviceOptions chosen = options;
-  if (chosen.name == "auto") chosen.name = "omp";
+  if (chosen.name == "auto") chosen.name = ranks_of_this_job() > 1 ? "mpi" : "omp";
   if (!chosen.waves.empty() && !is_sim(chosen.name)) {
     return fail(ErrorKind::kUsage, fmt::format("device '{}' has no waves to trace", chosen.name),
                 "use --device sim, or leave --trace out");
@@ -114,6 +138,7 @@ Result<std::unique_ptr<Device>> open_device(const DeviceOptions& options) {
   }
   const Result<ScheduleOptions> schedule = choose_schedule(chosen);
   if (!schedule) return std::unexpected(schedule.error());
+  if (chosen.name == "mpi") return open_ranks(chosen, *schedule);
   return open_software(chosen, *schedule);
 }
 

@@ -25,6 +25,11 @@ struct CommittedImage {
   std::optional<StreamImage> stream;  ///< of the schedule rays, unless plain
 };
 
+/// True for pieces that may begin a new image.
+inline bool begins_image(const protocol::LoadHead& head) {
+  return head.kind == static_cast<std::uint8_t>(protocol::SectionKind::kHeader);
+}
+
 /// Memory grows with the bytes that have arrived, never with what a header promises.
 class ImageStore {
  public:

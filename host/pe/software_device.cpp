@@ -8,10 +8,8 @@
 #include <fmt/format.h>
 
 #include "hal/record_sizes.hpp"
-#include "host/pe/ray_batch.hpp"
-#include "host/pe/schedule_paper.hpp"
-#include "host/pe/schedule_pes.hpp"
-#include "host/pe/schedule_rays.hpp"
+#include "host/pe/image_store.hpp"
+#include "host/pe/thread_crew.hpp"
 
 namespace gridrt {
 namespace {
@@ -19,6 +17,8 @@ namespace {
 using protocol::ErrorCode;
 using protocol::FrameType;
 using protocol::Layout;
+
+constexpr std::chrono::seconds kBeat(1);  ///< silence before the host is told that work goes on
 
 template <class Report>
 void put_report(const Report& report, std::span<std::byte> body) {
@@ -31,7 +31,11 @@ void put_report(const Report& report, std::span<std::byte> body) {
 }  // namespace
 
 SoftwareDevice::SoftwareDevice(SoftwareDeviceOptions options)
-    : options_(std::move(options)), store_(options_.capabilities) {}
+    : options_(std::move(options)),
+      crew_(std::make_unique<ThreadCrew>(options_.schedule, options_.capabilities)) {}
+
+SoftwareDevice::SoftwareDevice(SoftwareDeviceOptions options, std::unique_ptr<Crew> crew)
+    : options_(std::move(options)), crew_(std::move(crew)) {}
 
 Result<void> SoftwareDevice::consume(std::span<const std::byte> bytes) {
   reader_.push(bytes);
@@ -54,6 +58,8 @@ Result<void> SoftwareDevice::handle(const Frame& frame) {
   if (frame.payload.size() > options_.capabilities.max_payload) {
     return answer_error(sequence, {ErrorCode::kBadLength, frame.header.length});
   }
+  if (frame.type() == FrameType::kTrace) return trace(frame);
+  if (auto done = answer_all(); !done) return done;
   Accepted<void> accepted;
   switch (frame.type()) {
     case FrameType::kNoOp:
@@ -63,20 +69,14 @@ Result<void> SoftwareDevice::handle(const Frame& frame) {
       break;
     case FrameType::kCommit:
       accepted = commit(frame.payload);
-      if (accepted) return append_frame(out_, FrameType::kNoOp, Layout::kNone, sequence, {});
       break;
-    case FrameType::kTrace: {
-      const std::size_t before = out_.size();
-      FrameBuilder reply(out_, FrameType::kHits, frame.layout(), sequence);
-      accepted = trace(frame, reply);
-      if (accepted) return reply.finish();
-      out_.resize(before);
-      break;
-    }
     default:
       accepted = refuse(ErrorCode::kBadType, frame.header.type);
   }
-  return accepted ? Result<void>{} : answer_error(sequence, accepted.error());
+  if (auto health = crew_->health(); !health) return health;
+  if (!accepted) return answer_error(sequence, accepted.error());
+  if (frame.type() != FrameType::kCommit) return {};
+  return append_frame(out_, FrameType::kNoOp, Layout::kNone, sequence, {});
 }
 
 Accepted<void> SoftwareDevice::load_section(std::span<const std::byte> payload) {
@@ -87,12 +87,8 @@ Accepted<void> SoftwareDevice::load_section(std::span<const std::byte> payload) 
   if ((std::uint64_t{head.bytes} + 3) / 4 * 4 != payload.size() - kHead) {
     return refuse(ErrorCode::kBadLength, length);
   }
-  // The committed image goes on answering until another one is begun.
-  const Accepted<void> stored = store_.add(head, payload.subspan(kHead, head.bytes));
-  if (stored && head.kind == static_cast<std::uint8_t>(protocol::SectionKind::kHeader)) {
-    image_.reset();
-    state_ = protocol::DeviceState::kLoading;
-  }
+  const Accepted<void> stored = crew_->load(head, payload.subspan(kHead, head.bytes));
+  if (stored && begins_image(head)) state_ = protocol::DeviceState::kLoading;
   return stored;
 }
 
@@ -101,47 +97,67 @@ Accepted<void> SoftwareDevice::commit(std::span<const std::byte> payload) {
   if (payload.size() != kHead) {
     return refuse(ErrorCode::kBadLength, static_cast<std::uint32_t>(payload.size()));
   }
-  Accepted<std::unique_ptr<CommittedImage>> image =
-      store_.commit(protocol::load_commit_head(payload.first<kHead>()).pe_mask);
-  if (!image) {
-    state_ = protocol::DeviceState::kFailed;
-    return std::unexpected(image.error());
-  }
-  const ScheduleOptions& schedule = options_.schedule;
-  if (schedule.schedule == Schedule::kRays && !schedule.plain) {
-    (*image)->stream = make_stream(**image, schedule.simd, schedule.threads);
-  }
-  image_ = std::move(*image);
-  state_ = protocol::DeviceState::kReady;
-  return {};
+  const Accepted<void> committed =
+      crew_->commit(protocol::load_commit_head(payload.first<kHead>()).pe_mask);
+  state_ = committed ? protocol::DeviceState::kReady : protocol::DeviceState::kFailed;
+  return committed;
 }
 
-Accepted<void> SoftwareDevice::trace(const Frame& frame, FrameBuilder& reply) {
+Result<void> SoftwareDevice::trace(const Frame& frame) {
+  const std::uint32_t sequence = frame.header.sequence;
+  // Sent again because the answer takes long: it will come.
+  if (std::ranges::count(under_way_, sequence) > 0) return {};
+  const Accepted<void> started = start(frame);
+  if (auto health = crew_->health(); !health) return health;
+  if (!started) return answer_error(sequence, started.error());
+  if (under_way_.empty()) last_word_ = std::chrono::steady_clock::now();
+  under_way_.push_back(sequence);
+  const Result<bool> answered = answer_one(std::chrono::milliseconds(0));
+  return answered ? Result<void>{} : std::unexpected(answered.error());
+}
+
+Accepted<void> SoftwareDevice::start(const Frame& frame) {
   constexpr std::size_t kHead = protocol::TraceHead::kBytes;
-  if (!image_) return refuse(ErrorCode::kNotReady, 0);
-  if (frame.header.layout != image_->header.layout) {
-    return refuse(ErrorCode::kBadLayout, frame.header.layout);
-  }
+  const Layout layout = crew_->layout();
+  if (layout == Layout::kNone) return refuse(ErrorCode::kNotReady, 0);
+  if (frame.layout() != layout) return refuse(ErrorCode::kBadLayout, frame.header.layout);
   if (frame.payload.size() < kHead) return refuse(ErrorCode::kBadLength, frame.header.length);
   const protocol::TraceHead head = protocol::load_trace_head(frame.payload.first<kHead>());
   const std::span<const std::byte> records = frame.payload.subspan(kHead);
-  if (head.count == 0 || records.size() != head.count * ray_record_bytes(frame.layout())) {
+  if (head.count == 0 || records.size() != head.count * ray_record_bytes(layout)) {
     return refuse(ErrorCode::kBadLength, frame.header.length);
   }
-  const Accepted<std::vector<BatchRay>> rays = unpack_rays(image_->header, records);
-  if (!rays) return std::unexpected(rays.error());
-  reply.append(frame.payload.first(kHead));
-  const std::span<std::byte> hits = reply.extend(head.count * hit_record_bytes(frame.layout()));
-  switch (options_.schedule.schedule) {
-    case Schedule::kRays:
-      trace_rays(*image_, *rays, hits, options_.schedule.threads, counters_);
-      break;
-    case Schedule::kPes:
-      trace_pes(*image_, *rays, hits, options_.schedule, counters_);
-      break;
-    case Schedule::kPaper:
-      trace_paper(*image_, *rays, hits, options_.schedule, counters_);
-      break;
+  return crew_->start({frame.header.sequence, head, records});
+}
+
+/// Appends the answer to one Trace frame; false if none is ready in time.
+Result<bool> SoftwareDevice::answer_one(std::chrono::milliseconds patience) {
+  const std::optional<TraceAnswer> answer = crew_->finish(patience);
+  if (auto health = crew_->health(); !health) return std::unexpected(std::move(health.error()));
+  if (!answer) return false;
+  std::erase(under_way_, answer->sequence);
+  last_word_ = std::chrono::steady_clock::now();
+  Result<void> done;
+  if (answer->refusal) {
+    done = answer_error(answer->sequence, *answer->refusal);
+  } else {
+    FrameBuilder reply(out_, FrameType::kHits, crew_->layout(), answer->sequence);
+    std::array<std::byte, protocol::TraceHead::kBytes> head{};
+    protocol::store(answer->head, head);
+    reply.append(head);
+    reply.append(answer->hits);
+    done = reply.finish();
+  }
+  if (!done) return std::unexpected(std::move(done.error()));
+  return true;
+}
+
+Result<void> SoftwareDevice::answer_all() {
+  constexpr std::chrono::milliseconds kPatience(100);
+  while (!under_way_.empty()) {
+    if (auto answered = answer_one(kPatience); !answered) {
+      return std::unexpected(std::move(answered.error()));
+    }
   }
   return {};
 }
@@ -157,7 +173,7 @@ Result<void> SoftwareDevice::answer_error(std::uint32_t sequence, const Refusal&
 }
 
 Result<std::size_t> SoftwareDevice::produce(std::span<std::byte> out,
-                                            std::chrono::milliseconds /*timeout*/) {
+                                            std::chrono::milliseconds timeout) {
   // The host has sent all it wants to and waits, so an unfinished frame was cut short on the way;
   // what it would swallow are the frames behind it.
   while (out_.empty() && reader_.buffered() > 0) {
@@ -165,6 +181,18 @@ Result<std::size_t> SoftwareDevice::produce(std::span<std::byte> out,
     reader_.resynchronise();
     if (auto done = handle_frames(); !done) return std::unexpected(std::move(done.error()));
     if (reader_.buffered() == before) break;
+  }
+  if (out_.empty() && !under_way_.empty()) {
+    if (auto answered = answer_one(timeout); !answered) {
+      return std::unexpected(std::move(answered.error()));
+    }
+    const auto now = std::chrono::steady_clock::now();
+    if (out_.empty() && now - last_word_ >= kBeat) {
+      last_word_ = now;
+      if (auto done = append_frame(out_, FrameType::kNoOp, Layout::kNone, 0, {}); !done) {
+        return std::unexpected(std::move(done.error()));
+      }
+    }
   }
   const std::size_t bytes = std::min(out.size(), out_.size() - taken_);
   std::copy_n(out_.begin() + static_cast<std::ptrdiff_t>(taken_), bytes, out.begin());
@@ -199,37 +227,40 @@ Result<void> SoftwareDevice::get_feature(std::uint8_t id, std::span<std::byte> b
       return {};
     }
     case protocol::CountersReport::kId: {
+      const PeCounters counters = crew_->counters();
       protocol::CountersReport report;
-      report.rays = counters_.rays;
-      report.steps = counters_.steps;
-      report.tests = counters_.tests;
-      report.masked = counters_.masked;
-      report.interrupts = counters_.interrupts;
-      report.feedback_waits = counters_.feedback_waits;
+      report.rays = counters.rays;
+      report.steps = counters.steps;
+      report.tests = counters.tests;
+      report.masked = counters.masked;
+      report.interrupts = counters.interrupts;
+      report.feedback_waits = counters.feedback_waits;
       put_report(report, body);
-      return {};
+      return crew_->health();
     }
     case protocol::ExchangeReport::kId: {
+      const PeCounters counters = crew_->counters();
       protocol::ExchangeReport report;
-      report.barriers = counters_.barriers;
-      report.barrier_ns = counters_.barrier_ns;
-      report.messages = counters_.messages;
-      report.message_bytes = counters_.message_bytes;
-      report.message_ns = counters_.message_ns;
-      report.wait_ns = counters_.wait_ns;
-      report.worker_ns = counters_.worker_ns;
+      report.barriers = counters.barriers;
+      report.barrier_ns = counters.barrier_ns;
+      report.messages = counters.messages;
+      report.message_bytes = counters.message_bytes;
+      report.message_ns = counters.message_ns;
+      report.wait_ns = counters.wait_ns;
+      report.worker_ns = counters.worker_ns;
       put_report(report, body);
-      return {};
+      return crew_->health();
     }
     case protocol::AheadReport::kId: {
+      const PeCounters counters = crew_->counters();
       protocol::AheadReport report;
-      report.tests_ahead = counters_.tests_ahead;
-      report.tests_aborted = counters_.tests_aborted;
-      report.aborted_ns = counters_.aborted_ns;
-      report.interrupts_sent = counters_.interrupts_sent;
-      report.feedbacks_sent = counters_.feedbacks_sent;
+      report.tests_ahead = counters.tests_ahead;
+      report.tests_aborted = counters.tests_aborted;
+      report.aborted_ns = counters.aborted_ns;
+      report.interrupts_sent = counters.interrupts_sent;
+      report.feedbacks_sent = counters.feedbacks_sent;
       put_report(report, body);
-      return {};
+      return crew_->health();
     }
     default:
       return fail(ErrorKind::kUnsupported, fmt::format("the device has no report {}", id));
@@ -250,11 +281,10 @@ Result<void> SoftwareDevice::set_feature(std::uint8_t id, std::span<const std::b
 }
 
 void SoftwareDevice::reset() {
-  store_.clear();
-  image_.reset();
+  crew_->reset();
+  under_way_.clear();
   state_ = protocol::DeviceState::kEmpty;
   last_error_ = {protocol::ErrorCode::kNone, 0};
-  counters_ = {};
   reader_.clear();
   out_.clear();
   taken_ = 0;

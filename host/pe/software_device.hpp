@@ -9,7 +9,8 @@
 
 #include "hal/endpoint.hpp"
 #include "hal/frame.hpp"
-#include "host/pe/image_store.hpp"
+#include "host/pe/capabilities.hpp"
+#include "host/pe/crew.hpp"
 #include "host/pe/schedule.hpp"
 
 namespace gridrt {
@@ -21,10 +22,18 @@ struct SoftwareDeviceOptions {
   protocol::CapabilitiesReport capabilities = software_capabilities();
 };
 
-/// Answers frames in the order of their arrival, each before consume() returns.
+/// Answers frames in the order of their arrival, except that several Trace frames may be under way;
+/// everything else waits for them. While they take long, a NoOp of sequence number 0 each second
+/// tells the host that work goes on.
 class SoftwareDevice final : public Endpoint {
  public:
+  /// Threads of this process do the work.
   explicit SoftwareDevice(SoftwareDeviceOptions options);
+  /// `crew` does the work; `options.schedule` means nothing.
+  SoftwareDevice(SoftwareDeviceOptions options, std::unique_ptr<Crew> crew);
+
+  /// True while a Trace frame is unanswered.
+  [[nodiscard]] bool busy() const { return !under_way_.empty(); }
 
   Result<void> consume(std::span<const std::byte> bytes) override;
   Result<std::size_t> produce(std::span<std::byte> out, std::chrono::milliseconds timeout) override;
@@ -36,17 +45,20 @@ class SoftwareDevice final : public Endpoint {
   Result<void> handle(const Frame& frame);
   Accepted<void> load_section(std::span<const std::byte> payload);
   Accepted<void> commit(std::span<const std::byte> payload);
-  Accepted<void> trace(const Frame& frame, FrameBuilder& reply);
+  Result<void> trace(const Frame& frame);
+  Accepted<void> start(const Frame& frame);
+  Result<bool> answer_one(std::chrono::milliseconds patience);
+  Result<void> answer_all();
   Result<void> answer_error(std::uint32_t sequence, const Refusal& refusal);
   void reset();
 
   SoftwareDeviceOptions options_;
   FrameReader reader_;
-  ImageStore store_;
-  std::unique_ptr<CommittedImage> image_;
+  std::unique_ptr<Crew> crew_;
+  std::vector<std::uint32_t> under_way_;  ///< sequence numbers of unanswered Trace frames
+  std::chrono::steady_clock::time_point last_word_;
   protocol::DeviceState state_ = protocol::DeviceState::kEmpty;
   Refusal last_error_{protocol::ErrorCode::kNone, 0};
-  PeCounters counters_;
   std::vector<std::byte> out_;
   std::size_t taken_ = 0;  // of out_
 };

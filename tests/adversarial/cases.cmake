@@ -18,7 +18,7 @@ endfunction()
 # with a part of the rays (all of them: GRIDRT_DEVICES=sim build/bin/adversarial_NAME).
 function(gridrt_cases name)
   add_executable(adversarial_${name} ${ARGN})
-  target_link_libraries(adversarial_${name} PRIVATE gridrt_bench gridrt_flags GTest::gtest_main)
+  target_link_libraries(adversarial_${name} PRIVATE gridrt_bench gridrt_flags gridrt_gtest_main)
   gtest_discover_tests(adversarial_${name} DISCOVERY_TIMEOUT 60
                        PROPERTIES LABELS adversarial TIMEOUT 900)
   sim_cases(${name} adversarial_${name} sim,sim:stall)

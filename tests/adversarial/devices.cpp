@@ -22,6 +22,8 @@ std::vector<std::string> devices_under_test() {
   std::vector<std::string> names = asked_devices();
   if (names.empty()) {
     names = built_in_devices();
+    // A job of processes for each device that a test opens: such runs have tests of their own.
+    std::erase(names, "mpi");
     names.emplace_back("seq-board");
   }
   return names;

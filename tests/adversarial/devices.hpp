@@ -13,7 +13,8 @@ namespace gridrt::adversarial {
 /// The names in the environment variable GRIDRT_DEVICES (separated by commas), or none.
 std::vector<std::string> asked_devices();
 
-/// Those asked for, or all that are built in and `seq-board`, software with the board's limits.
+/// Those asked for, or all that are built in but `mpi`, and `seq-board`, software with the board's
+/// limits.
 std::vector<std::string> devices_under_test();
 
 /// Of how many rays a device under test gets one, the others being answered by `seq`:

@@ -4,7 +4,7 @@ target_link_libraries(gridrt_awkward PUBLIC gridrt_bench PRIVATE gridrt_flags GT
 
 # The contract of every device, by name: a device joins by being built in.
 add_executable(contract answers_test.cpp errors_test.cpp limits_test.cpp fixture.cpp)
-target_link_libraries(contract PRIVATE gridrt_awkward gridrt_flags GTest::gtest_main)
+target_link_libraries(contract PRIVATE gridrt_awkward gridrt_flags gridrt_gtest_main)
 gtest_discover_tests(contract DISCOVERY_TIMEOUT 60 TEST_FILTER "-*/sim*")
 gtest_discover_tests(contract DISCOVERY_TIMEOUT 60 TEST_FILTER "*/sim*"
   PROPERTIES LABELS "contract;rtl" TIMEOUT 900 ENVIRONMENT GRIDRT_CONTRACT_RAYS=300)

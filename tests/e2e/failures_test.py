@@ -29,8 +29,7 @@ class Usage(ProgramTest):
         self.assertEqual(self.entries(), [])
 
     def test_what_is_not_built_in_is_5(self):
-        for words in (["--device", "usb"], ["--device", "usb:0001"],
-                      ["--device", "mpi"], ["--exact"]):
+        for words in (["--device", "usb"], ["--device", "usb:0001"], ["--exact"]):
             with self.subTest(words=words):
                 done = self.host("builtin:teapot", "-o", "a.png", *words, code=5)
                 self.assertIn("not built in yet", done.stderr)

@@ -159,7 +159,7 @@ TEST(DriverRefusal, TracingWithoutAnImage) {
 
 TEST(Devices, NamesAreCheckedAndExplained) {
   DeviceOptions options;
-  for (const char* planned : {"usb", "usb:12", "mpi"}) {
+  for (const char* planned : {"usb", "usb:12"}) {
     options.name = planned;
     const auto device = open_device(options);
     ASSERT_FALSE(device.has_value());

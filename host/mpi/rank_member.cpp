@@ -1,0 +1,150 @@
+#include "host/mpi/rank_member.hpp"
+
+#include <cstring>
+#include <utility>
+
+#include "host/pe/ray_batch.hpp"
+
+namespace gridrt {
+namespace {
+
+constexpr unsigned kDetailShift = 32;
+
+}  // namespace
+
+std::uint64_t pack_verdict(const Accepted<void>& verdict) {
+  if (verdict) return 0;
+  return (std::uint64_t{verdict.error().detail} << kDetailShift) |
+         static_cast<std::uint64_t>(verdict.error().code);
+}
+
+Accepted<void> unpack_verdict(std::uint64_t number) {
+  const auto code = static_cast<protocol::ErrorCode>(number & 0xFFFFU);
+  if (code == protocol::ErrorCode::kNone) return {};
+  return refuse(code, static_cast<std::uint32_t>(number >> kDetailShift));
+}
+
+RankMember::RankMember(Postbox& postbox, int device, const OpenOrder& order)
+    : postbox_(postbox), device_(device), order_(order), store_(order.limits) {}
+
+Accepted<void> RankMember::load(const protocol::LoadHead& head, std::span<const std::byte> bytes) {
+  Accepted<void> stored = store_.add(head, bytes);
+  if (stored && begins_image(head)) {
+    counters_ = counters();
+    worker_.reset();
+    image_.reset();
+  }
+  return stored;
+}
+
+Accepted<void> RankMember::commit(const CommitOrder& order) {
+  const auto ranks = static_cast<std::uint32_t>(postbox_.ranks());
+  const auto rank = static_cast<std::uint32_t>(postbox_.rank());
+  std::uint64_t own = 0;
+  for (std::uint32_t p = rank; p < 64; p += ranks) own |= std::uint64_t{1} << p;
+  Accepted<std::unique_ptr<CommittedImage>> image = store_.commit(order.pe_mask & own);
+  if (!image) return std::unexpected(image.error());
+  counters_ = counters();
+  worker_.reset();
+  image_ = std::move(*image);
+  PesTeam team;
+  team.worker = rank;
+  team.workers = ranks;
+  team.interrupt = order_.interrupt;
+  team.feedback = order_.feedback;
+  team.first_batch = order.first_batch;
+  worker_ = make_rank_worker(image_->engine, team, order_.schedule, [this] {
+    deliver();
+    if (fetch_) fetch_();
+  });
+  return {};
+}
+
+void RankMember::reset() {
+  worker_.reset();
+  image_.reset();
+  store_.clear();
+  counters_ = {};
+}
+
+Accepted<void> RankMember::add_batch(std::uint32_t batch, std::span<const std::byte> records) {
+  if (!worker_) {
+    return refuse(protocol::ErrorCode::kNotReady, static_cast<std::uint32_t>(postbox_.rank()));
+  }
+  Accepted<std::vector<BatchRay>> rays = unpack_rays(image_->header, records);
+  if (!rays) return std::unexpected(rays.error());
+  if (!busy()) {
+    busy_since_ = now_ns();
+    idle_since_ = 0;
+  }
+  worker_->add_batch(batch, std::move(*rays));
+  return {};
+}
+
+void RankMember::take_records(std::span<const std::byte> content) {
+  if (!worker_) return;  // late, of an image that is gone
+  std::vector<PesRecord> records(content.size() / sizeof(PesRecord));
+  std::memcpy(records.data(), content.data(), records.size() * sizeof(PesRecord));
+  const bool was_busy = busy();
+  worker_->take(records);
+  if (was_busy && !busy()) measure(true);
+}
+
+bool RankMember::work() {
+  if (!busy()) return false;
+  const bool worked = worker_->work();
+  deliver();
+  measure(worked);
+  return worked;
+}
+
+/// Adds up the time with and without work while batches are under way.
+void RankMember::measure(bool worked) {
+  if (busy() && !worked) {
+    if (idle_since_ == 0) idle_since_ = now_ns();
+    return;
+  }
+  const std::uint64_t now = now_ns();
+  // Of `paper`, waiting is time in barriers, which its worker counts.
+  const bool counts = order_.schedule == Schedule::kPes;
+  if (counts && idle_since_ != 0) counters_.wait_ns += now - idle_since_;
+  idle_since_ = 0;
+  if (busy_since_ == 0) return;
+  counters_.worker_ns += now - busy_since_;
+  busy_since_ = busy() ? now : 0;
+}
+
+void RankMember::deliver() {
+  if (!worker_) return;
+  for (int to = 0; to < postbox_.ranks(); ++to) {
+    std::vector<PesRecord>& records = worker_->outbox(static_cast<std::size_t>(to));
+    if (to == postbox_.rank() || records.empty()) continue;
+    Parcel parcel{ParcelKind::kRecords, to, device_, 0, {}};
+    const std::span<const std::byte> raw = std::as_bytes(std::span(records));
+    parcel.content.assign(raw.begin(), raw.end());
+    records.clear();
+    send(std::move(parcel));
+  }
+}
+
+void RankMember::send(Parcel parcel) {
+  ++counters_.messages;
+  counters_.message_bytes += parcel.content.size();
+  const std::uint64_t start = now_ns();
+  Result<void> sent = postbox_.send(std::move(parcel));
+  counters_.message_ns += now_ns() - start;
+  if (!sent && health_) health_ = std::move(sent);
+}
+
+std::optional<PesWorker::Finished> RankMember::take_finished() {
+  if (!worker_) return std::nullopt;
+  return worker_->take_finished();
+}
+
+PeCounters RankMember::counters() {
+  PeCounters sum = counters_;
+  if (worker_) sum += worker_->counters();
+  return sum;
+}
+
+}  // namespace gridrt

@@ -1,0 +1,89 @@
+// One rank's part of a device: its own PEs' image, its worker, and the parcels between them and the
+// other ranks. Rank 0's belongs to a RankCrew, the others' to a RankServer.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "host/mpi/postbox.hpp"
+#include "host/mpi/rank_worker.hpp"
+#include "host/pe/image_store.hpp"
+
+namespace gridrt {
+
+/// Content of kOpen.
+struct OpenOrder {
+  Schedule schedule = Schedule::kPes;
+  bool interrupt = true;
+  bool feedback = true;
+  std::uint32_t beat_ms = 1000;  ///< between two beats while batches are under way
+  protocol::CapabilitiesReport limits;
+};
+
+/// Content of kCommit.
+struct CommitOrder {
+  std::uint64_t pe_mask = 0;
+  std::uint32_t first_batch = 0;  ///< number of the next batch
+  std::uint32_t reserved = 0;
+};
+
+/// kVerdict's number, and back.
+std::uint64_t pack_verdict(const Accepted<void>& verdict);
+Accepted<void> unpack_verdict(std::uint64_t number);
+
+class RankMember {
+ public:
+  /// Rank r of R owns the PEs p of an image with p mod R = r. `postbox` outlives the member.
+  RankMember(Postbox& postbox, int device, const OpenOrder& order);
+
+  Accepted<void> load(const protocol::LoadHead& head, std::span<const std::byte> bytes);
+  Accepted<void> commit(const CommitOrder& order);
+  void reset();
+
+  /// Unpacks and begins a batch. Refuses rays outside the box, and all without an image.
+  Accepted<void> add_batch(std::uint32_t batch, std::span<const std::byte> records);
+
+  /// A parcel of records.
+  void take_records(std::span<const std::byte> content);
+
+  /// Does a little; false if there was nothing to do.
+  bool work();
+
+  /// True while a batch is under way.
+  [[nodiscard]] bool busy() const { return worker_ && worker_->busy(); }
+  [[nodiscard]] const protocol::ImageHeader* image() const {
+    return image_ ? &image_->header : nullptr;
+  }
+  std::optional<PesWorker::Finished> take_finished();
+  PeCounters counters();
+
+  /// Sends and counts a parcel that belongs to the work on rays.
+  void send(Parcel parcel);
+
+  /// Errors: kTransport, the first that sending or fetching met.
+  [[nodiscard]] const Result<void>& health() const { return health_; }
+
+  /// Called in the midst of long work, so that parcels are fetched; set once.
+  void on_exchange(std::function<void()> fetch) { fetch_ = std::move(fetch); }
+
+ private:
+  void deliver();
+  void measure(bool worked);
+
+  Postbox& postbox_;
+  int device_;
+  OpenOrder order_;
+  ImageStore store_;
+  std::unique_ptr<CommittedImage> image_;
+  std::unique_ptr<RankWorker> worker_;
+  std::function<void()> fetch_;
+  PeCounters counters_;  ///< of what is gone, and of parcels
+  std::uint64_t busy_since_ = 0;
+  std::uint64_t idle_since_ = 0;
+  Result<void> health_;
+};
+
+}  // namespace gridrt

@@ -1,0 +1,17 @@
+# The device mpi: the contract under mpirun, and ranks that die. More ranks than cores, so that these
+# tests run by themselves.
+if(GRIDRT_BUILD_MPI)
+  function(mpi_test name)
+    add_test(NAME mpi.${name} COMMAND ${ARGN})
+    set_tests_properties(mpi.${name} PROPERTIES
+      LABELS mpi TIMEOUT 600 PROCESSORS 2
+      ENVIRONMENT "GRIDRT_BIN=${CMAKE_RUNTIME_OUTPUT_DIRECTORY};PYTHONDONTWRITEBYTECODE=1")
+  endfunction()
+  set(mpi_run /usr/bin/python3 -B ${CMAKE_CURRENT_LIST_DIR}/mpi_contract.py)
+  mpi_test(contract_1 ${mpi_run} 1)
+  mpi_test(contract_3 ${mpi_run} 3)
+  mpi_test(contract_8 ${mpi_run} 8 --rays 60)
+  mpi_test(contract_tcp ${mpi_run} 2 --tcp)
+  mpi_test(programs /usr/bin/python3 -B ${CMAKE_CURRENT_LIST_DIR}/mpi_test.py)
+  mpi_test(failures /usr/bin/python3 -B ${CMAKE_CURRENT_LIST_DIR}/mpi_failures_test.py)
+endif()

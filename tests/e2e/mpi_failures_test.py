@@ -1,0 +1,107 @@
+"""The device mpi when ranks die or hang: one clear error in time, nothing left behind."""
+import os
+import signal
+import subprocess
+import unittest
+
+from mpi_support import descendants, mpirun, ranks_of, seconds_of, state_of, wait_until
+from programs import BIN, ProgramTest
+
+LONG = ("builtin:teapots", "--size", "1280x960", "--samples", "64", "--hits", "a.npy")
+LIMIT = 10  # seconds that a rank may be silent
+SLACK = 25  # for a busy machine
+
+
+class Failures(ProgramTest):
+    def start(self, *words):
+        self.process = subprocess.Popen(words, cwd=self.folder, stdout=subprocess.PIPE,
+                                        stderr=subprocess.PIPE, text=True)
+        self.addCleanup(self.end)
+        return self.process
+
+    def end(self):
+        if self.process.poll() is None:
+            self.process.terminate()  # mpirun takes its ranks along
+        self.process.communicate(timeout=SLACK)
+
+    def await_work(self, process, program):
+        """Until four ranks have computed for a while: they trace."""
+        def at_work():
+            ranks = ranks_of(process.pid, program)
+            return len(ranks) == 4 and all(seconds_of(rank) > 0.4 for rank in ranks)
+        self.assertTrue(wait_until(at_work, 180))
+
+    def alone(self):
+        """A host that traces, with its four ranks: (process, all its descendants, ranks)."""
+        host = self.start(BIN / "gridrt-host", *LONG, "--device", "mpi")
+        self.await_work(host, "gridrt-rank")
+        family = descendants(host.pid)
+        return host, family, ranks_of(host.pid, "gridrt-rank")
+
+    def under_mpirun(self):
+        job = self.start(*mpirun(4), BIN / "gridrt-host", *LONG)
+        self.await_work(job, "gridrt-host")
+        return job, descendants(job.pid), ranks_of(job.pid, "gridrt-host")
+
+    def gone(self, family):
+        """All processes have ended (or are zombies that init has not fetched yet)."""
+        def over():
+            return not [p for p in family if (s := state_of(p)) and s[1] != "Z"]
+        return wait_until(over, SLACK)
+
+    def expect_error(self, process, family, seconds, *needles):
+        _, words = process.communicate(timeout=seconds)
+        self.assertEqual(process.returncode, 6, words)
+        self.assertEqual(words.count("gridrt-host: "), 1, words)
+        self.assertLessEqual(len(words.splitlines()), 2, words)
+        for needle in needles:
+            self.assertIn(needle, words)
+        self.assertTrue(self.gone(family))
+        self.assertEqual([p.name for p in self.folder.iterdir()], [])
+
+    def test_a_rank_is_killed(self):
+        host, family, ranks = self.alone()
+        os.kill(ranks[2], signal.SIGKILL)
+        self.expect_error(host, family, SLACK, "signal 9")
+
+    def test_rank_0_is_killed(self):
+        host, family, ranks = self.alone()
+        os.kill(min(ranks), signal.SIGKILL)
+        self.expect_error(host, family, SLACK, "signal 9")
+
+    def test_mpirun_is_killed(self):
+        host, family, ranks = self.alone()
+        launcher = next(p for p in family if p not in ranks)
+        os.kill(launcher, signal.SIGKILL)
+        self.expect_error(host, family, SLACK, "ranks are gone")
+
+    def test_a_rank_hangs(self):
+        host, family, ranks = self.alone()
+        os.kill(max(ranks), signal.SIGSTOP)
+        self.expect_error(host, family, LIMIT + SLACK, "silent for 10000 ms")
+
+    def test_the_host_is_killed(self):
+        host, family, _ = self.alone()
+        host.kill()
+        self.assertTrue(self.gone(family))
+
+    def test_a_rank_of_ones_own_job_is_killed(self):
+        job, family, ranks = self.under_mpirun()
+        os.kill(max(ranks), signal.SIGKILL)
+        _, words = job.communicate(timeout=SLACK)
+        self.assertNotEqual(job.returncode, 0)
+        self.assertIn("signal 9", words)
+        self.assertTrue(self.gone(family))
+
+    def test_a_rank_of_ones_own_job_hangs(self):
+        job, family, ranks = self.under_mpirun()
+        os.kill(max(ranks), signal.SIGSTOP)
+        _, words = job.communicate(timeout=2 * LIMIT + SLACK)
+        self.assertEqual(job.returncode, 6, words)
+        self.assertEqual(words.count("gridrt-host: "), 1, words)
+        self.assertIn("silent for 10000 ms", words)
+        self.assertTrue(self.gone(family))
+
+
+if __name__ == "__main__":
+    unittest.main()
