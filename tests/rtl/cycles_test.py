@@ -1,0 +1,41 @@
+#!/usr/bin/env python3
+"""Clocks of a ray do not get worse unnoticed: few rays on two meshes, all views together.
+
+The limits are those of tools/board-cycles --check, which looks at every view with all rays.
+"""
+import collections
+import json
+import subprocess
+import sys
+
+SCENES = ("builtin:teapot?tessellation=11", "builtin:sphere?kind=uv&segments=80")
+LIMITS = {"primary": 3.25, "shadow": 5.5, "mirror": 5.5}
+
+
+def main():
+    program = sys.argv[1]
+    failed = False
+    for scene in SCENES:
+        run = subprocess.run([program, scene, "--rays", "1000"], check=False,
+                             stdout=subprocess.PIPE, text=True)
+        waves = [json.loads(line) for line in run.stdout.splitlines()]
+        if run.returncode or len(waves) < 13:
+            print(f"{scene}: exit code {run.returncode}, {len(waves)} waves")
+            failed = True
+        clocks, rays = collections.Counter(), collections.Counter()
+        for wave in waves:
+            kind = wave["wave"].split()[0]
+            clocks[kind] += wave["clocks"]
+            rays[kind] += wave["rays"]
+            if wave["wrong"]:
+                print(f"{scene}, {wave['wave']}: {wave['wrong']} wrong answers")
+                failed = True
+        for kind, limit in LIMITS.items():
+            figure = clocks[kind] / max(1, rays[kind])
+            print(f"{scene}: {figure:.2f} clocks a {kind} ray, at most {limit}")
+            failed = failed or figure > limit
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
