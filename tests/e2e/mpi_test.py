@@ -52,7 +52,7 @@ class Answers(ProgramTest):
     def under_mpirun(self, ranks, *words, tcp=False):
         """Statistics of a run whose hits are those of seq."""
         done = subprocess.run(
-            [*mpirun(ranks, tcp), BIN / "gridrt-host", *SCENE, *words, "--hits", "a.npy",
+            [*mpirun(ranks, tcp), BIN / "gridrt-host", *SCENE, *map(str, words), "--hits", "a.npy",
              "--stats", "a.json"], cwd=self.folder, check=False, capture_output=True, text=True,
             timeout=240)
         self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "", ""))
