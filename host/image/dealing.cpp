@@ -71,7 +71,8 @@ class Holdings {
     const Shares& share = measured_.shares[voxel];
     int least = spared;
     std::uint8_t best = from;
-    for (std::uint8_t to = 0; to < shares_.size(); ++to) {
+    for (std::size_t pe = 0; pe < shares_.size(); ++pe) {
+      const auto to = static_cast<std::uint8_t>(pe);
       if (to == from) continue;
       int made = 0;
       for (const VoxelReference& r : references) made += held_[r.triangle][to] == 0 ? 1 : 0;

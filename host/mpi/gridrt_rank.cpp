@@ -35,12 +35,13 @@ Result<void> handle(JobLink& link, SoftwareDevice& device, const LinkMessage& me
       std::memcpy(&size, message.content.data(), std::min(sizeof(size), message.content.size()));
       std::vector<std::byte> body(std::min(size, protocol::kReportBytes));
       const Result<void> done = device.get_feature(id, body);
-      (void)answer(link, done, body);
+      [[maybe_unused]] const auto told = answer(link, done, body);  // a lost link shows next
       return {};
     }
-    case LinkKind::kSetFeature:
-      (void)answer(link, device.set_feature(id, message.content), {});
+    case LinkKind::kSetFeature: {
+      [[maybe_unused]] const auto told = answer(link, device.set_feature(id, message.content), {});
       return {};
+    }
     default:
       return {};
   }
@@ -86,8 +87,10 @@ int run(int argc, char** argv) {
   const auto device = make_rank_device(*options);
   const Result<void> carried = carry(link, *device);
   if (carried) return 0;
-  (void)link.send(LinkKind::kFailed, static_cast<std::uint32_t>(carried.error().kind),
-                  pack_error(carried.error()));
+  // The link may be what failed.
+  [[maybe_unused]] const auto told =
+      link.send(LinkKind::kFailed, static_cast<std::uint32_t>(carried.error().kind),
+                pack_error(carried.error()));
   ranks.abandon();
   return kExitDevice;
 }

@@ -30,7 +30,8 @@ class MpiPostbox final : public Postbox {
   ~MpiPostbox() override {
     // What nobody has taken by now may be taken while MPI goes on, so its bytes stay.
     if (!clear_sent() || outgoing_.empty()) return;
-    static_cast<void>(std::make_unique<std::deque<Outgoing>>(std::move(outgoing_)).release());
+    [[maybe_unused]] const auto* kept =
+        std::make_unique<std::deque<Outgoing>>(std::move(outgoing_)).release();
   }
 
   [[nodiscard]] int rank() const override { return rank_; }

@@ -62,13 +62,14 @@ Result<void> RankServer::fetch(std::size_t most, Step& step) {
       deferred_.pop_front();
     }
     if (!parcel) return std::unexpected(parcel.error());
-    if (!*parcel) return {};
+    std::optional<Parcel>& came = *parcel;
+    if (!came) return {};
     step.idle = false;
-    if ((*parcel)->kind == ParcelKind::kStop) {
+    if (came->kind == ParcelKind::kStop) {
       step.stopped = true;
       return postbox_.send({ParcelKind::kGone, 0, kNoDevice, 0, {}});
     }
-    if (auto done = handle(**parcel); !done) return done;
+    if (auto done = handle(*came); !done) return done;
   }
   return {};
 }
@@ -100,11 +101,13 @@ void RankServer::open(const Parcel& parcel) {
 /// In the midst of work only records are taken; the rest waits for its turn.
 void RankServer::fetch_record(int device, RankMember& member) {
   Result<std::optional<Parcel>> parcel = postbox_.receive(kAnyDevice);
-  if (!parcel || !*parcel) return;
-  if ((*parcel)->kind == ParcelKind::kRecords && (*parcel)->device == device) {
-    member.take_records((*parcel)->content);
+  if (!parcel) return;
+  std::optional<Parcel>& came = *parcel;
+  if (!came) return;
+  if (came->kind == ParcelKind::kRecords && came->device == device) {
+    member.take_records(came->content);
   } else {
-    deferred_.push_back(std::move(**parcel));
+    deferred_.push_back(std::move(*came));
   }
 }
 

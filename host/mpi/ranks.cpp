@@ -38,11 +38,12 @@ bool dismiss(int ranks) {
   for (int gone = 0; gone < ranks - 1;) {
     const auto parcel = postbox->receive(kNoDevice);
     if (!parcel || std::chrono::steady_clock::now() > end) return false;
-    if (!*parcel) {
+    const std::optional<Parcel>& came = *parcel;
+    if (!came) {
       patience.wait(true);
       continue;
     }
-    gone += (*parcel)->kind == ParcelKind::kGone ? 1 : 0;
+    gone += came->kind == ParcelKind::kGone ? 1 : 0;
   }
   return true;
 }
