@@ -134,19 +134,43 @@ module gridrt_resolve #(
     end
   end
 
+  // The stage behind it, so that the id's way through the comparison ends at a register. An ignored
+  // triangle that ends nothing goes no further.
+  logic known_valid, known_ready, known_hit, known_last, divides, real_hit;
+  logic [SLOT_W-1:0] known_slot;
+  logic [MAG_W-1:0] known_det, known_tn;
+  logic [ID_W-1:0] known_id;
+  logic [B-1:0] known_length;
+  assign real_hit = stage_hit && id != stage_ignore;
+  assign stage_ready = !known_valid || known_ready;
+
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) known_valid <= 1'b0;
+    else if (stage_ready) known_valid <= stage_valid && (real_hit || stage_last);
+  end
+  always_ff @(posedge clk_i) begin
+    if (stage_ready) begin
+      known_hit <= real_hit;
+      divides <= real_hit && !stage_any;
+      known_last <= stage_last;
+      known_slot <= stage_slot;
+      known_det <= stage_det;
+      known_tn <= stage_tn;
+      known_id <= stage_any ? {ID_W{1'b0}} : id;
+      known_length <= stage_length;
+    end
+  end
+
   // Into the order of events and, for a hit, into the divider whose turn it is.
-  logic real_hit, divides, useless, order_room, free;
+  logic order_room, free;
   logic [DIVIDERS-1:0] start, used, dividing;
   logic [LANE_W-1:0] in_lane, out_lane;
-  assign real_hit = stage_hit && id != stage_ignore;
-  assign divides = real_hit && !stage_any;
-  assign useless = !real_hit && !stage_last;  // an ignored triangle that ends nothing
   assign free = !used[in_lane];
-  assign stage_ready = useless || (order_room && (free || !divides));
-  assign wait_o = stage_valid && divides && !free;
+  assign known_ready = order_room && (free || !divides);
+  assign wait_o = known_valid && divides && !free;
 
   logic enters, leaves;
-  assign enters = stage_valid && stage_ready && !useless;
+  assign enters = known_valid && known_ready;
 
   logic out_valid, out_divides, out_last, out_hit;
   logic [SLOT_W-1:0] out_slot;
@@ -160,7 +184,7 @@ module gridrt_resolve #(
       .rst_ni,
       .in_valid_i (enters),
       .in_ready_o (order_room),
-      .in_data_i  ({divides, stage_slot, stage_last, real_hit, stage_any ? {ID_W{1'b0}} : id}),
+      .in_data_i  ({divides, known_slot, known_last, known_hit, known_id}),
       .out_valid_o(out_valid),
       .out_ready_i(leaves),
       .out_data_o ({out_divides, out_slot, out_last, out_hit, out_id}),
@@ -178,9 +202,9 @@ module gridrt_resolve #(
         .clk_i,
         .rst_ni,
         .start_i(start[i]),
-        .tn_i(stage_tn),
-        .det_i(stage_det),
-        .length_i(stage_length),
+        .tn_i(known_tn),
+        .det_i(known_det),
+        .length_i(known_length),
         .busy_o(dividing[i]),
         .quotient_o(quotient[i]),
         .limit_o(limit[i])

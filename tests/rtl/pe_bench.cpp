@@ -71,7 +71,7 @@ TEST_F(Pe, FillsUpAndRecovers) {
     if (HasFatalFailure()) return;
     ASSERT_EQ(counts().tasks, before) << "a PE that is full takes tasks";
     // Waiting, in fetch (a task and eight rows), tests and their results, events in order.
-    ASSERT_LE(pending(), GRIDRT_RTL_QUEUE + 9 + 32 + 1 + 16);
+    ASSERT_LE(pending(), GRIDRT_RTL_QUEUE + 9 + 32 + 2 + 16);
     drain({});
     if (HasFatalFailure()) return;
   }
