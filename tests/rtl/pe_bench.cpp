@@ -9,9 +9,6 @@ namespace {
 
 constexpr std::int64_t kWhole = (std::int64_t{1} << kPeBits) - 1;
 
-// A hit in ten tests is too much for one divider.
-constexpr double kPace = GRIDRT_RTL_DIVIDERS >= 3 ? 0.9 : 0.6;
-
 using Pe = PeDriver;
 
 // Without interrupts nothing may be left out: not a test, not a hit.
@@ -78,6 +75,9 @@ TEST_F(Pe, FillsUpAndRecovers) {
 }
 
 #ifndef GRIDRT_STALL
+// A hit in ten tests is too much for one divider.
+constexpr double kPace = GRIDRT_RTL_DIVIDERS >= 3 ? 0.9 : 0.6;
+
 // The pace: tests for each clock in which there is work. Four references are read in a clock, so a
 // list of n takes (n + 3) / 4 clocks at the least if the mask leaves out most of it.
 TEST_F(Pe, MakesATestAClock) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <deque>
 #include <iterator>
+#include <memory>
 #include <optional>
 #include <sstream>
 #include <vector>
@@ -64,7 +65,7 @@ class PeDriver : public testing::Test {
 
   /// Fills all memories; what is meant for others, or lies beyond, must change nothing.
   void load(std::int64_t size, unsigned sparse) {
-    image_.emplace(kPeBits, kPeSizes, size, sparse, random_);
+    image_ = std::make_unique<PeImage>(kPeBits, kPeSizes, size, sparse, random_);
     for (std::size_t i = 0; i < image_->vertices.size(); ++i) {
       const Point& p = image_->vertices[i];
       std::uint64_t record = 0;
@@ -229,7 +230,10 @@ class PeDriver : public testing::Test {
     counts_.masked += pe_->masked_o;
     counts_.busy += pe_->busy_o;
     counts_.cancelled += pe_->drop_cancelled_o;
-    if (offered_ && pe_->task_ready_o != 0) take_task();
+    if (offered_ && pe_->task_ready_o != 0) {
+      take_task(*offered_);
+      offered_.reset();
+    }
     if (pe_->tap_test_valid_o != 0) observe_test();
     if ((pe_->drop_o & 64U) != 0) {
       PeSlot& slot = slots_[pe_->drop_o & 63U];
@@ -242,10 +246,10 @@ class PeDriver : public testing::Test {
     observe_event(traffic);
   }
 
-  void take_task() {
-    PeSlot& slot = slots_[static_cast<std::size_t>(offered_->slot)];
-    SentTask sent{*offered_, tests_of(*image_, slot.ray, *offered_)};
-    if (kCancels && offered_->enter > slot.limit) {
+  void take_task(const Task& task) {
+    PeSlot& slot = slots_[static_cast<std::size_t>(task.slot)];
+    SentTask sent{task, tests_of(*image_, slot.ray, task)};
+    if (kCancels && task.enter > slot.limit) {
       sent.cancel_at = slot.limit_at;
       sent.cancelled_before = slot.limit_at + 4 <= pe_.clocks();
     }
@@ -256,7 +260,6 @@ class PeDriver : public testing::Test {
     slot.tasks.push_back(std::move(sent));
     ++counts_.tasks;
     ++pending_;
-    offered_.reset();
   }
 
   // Tests are made in the order of tasks; those of cancelled tasks may be missing.
@@ -319,7 +322,7 @@ class PeDriver : public testing::Test {
 
   Clocked<Vgridrt_pe> pe_;
   Random random_;
-  std::optional<PeImage> image_;
+  std::unique_ptr<PeImage> image_;
   std::vector<PeSlot> slots_;
   std::optional<Task> offered_;
   std::optional<Event> held_;

@@ -131,7 +131,8 @@ inline std::vector<int> order_of(const Task& task) {
 inline std::vector<PeTest> tests_of(const PeImage& image, const PeRay& ray, const Task& task) {
   std::vector<PeTest> tests;
   for (const int i : order_of(task)) {
-    const Reference& r = image.references[static_cast<std::size_t>(task.first + i)];
+    const Reference& r =
+        image.references[static_cast<std::size_t>(task.first) + static_cast<std::size_t>(i)];
     if (!share_halves(r.mask, task.halves)) continue;
     const Verdict verdict = judge(ray.p0, ray.p1, image.corners(r.triangle));
     PeTest test{r.triangle, verdict.hit, {}};
