@@ -18,7 +18,8 @@ module gridrt_pending #(
     output logic [SLOTS-1:0]                        none_o,
     output logic [SLOTS-1:0]                        many_o   // more than one
 );
-  localparam int unsigned PLANES = 5;  // at most 2 AHEAD - 1 + 8 even if a step was begun too early
+  // At most 2 AHEAD - 1 + 8 even if a step was begun too early.
+  localparam int unsigned PLANES = $clog2(2 * AHEAD + 8);
   localparam int unsigned AHEAD_LOG = $clog2(AHEAD);
 
   if (ENDS < 1 || ENDS > 6) begin : gen_illegal_ends

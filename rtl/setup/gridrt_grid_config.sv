@@ -1,5 +1,5 @@
-// The constants of a grid from its voxel counts and edges, an addition a clock: three times the edge,
-// blocks per axis, the lattice steps they span, and the strides of the block memory. Counts must be
+// The constants of a grid from its voxel counts and edges, an addition a clock: blocks per
+// axis, the lattice steps they span, and the strides of the block memory. Counts must be
 // 1 .. 512 and the blocks fit the block memory (whoever accepts an image checks that).
 module gridrt_grid_config (
     input  logic                                                          clk_i,
@@ -16,7 +16,6 @@ module gridrt_grid_config (
   localparam int unsigned EDGE_W = gridrt_state_pkg::EDGE_W;
 
   logic [2:0][EDGE_W-1:0] edges;
-  logic [2:0][EDGE_W+1:0] edges3;
   logic [2:0][SPAN_W-1:0] span;
   logic [2:0][AXIS_W-1:0] half_blocks;
   logic [BLOCK_W-1:0] stride_z;
@@ -29,7 +28,6 @@ module gridrt_grid_config (
 
   always_comb begin
     grid_o.edges = edges;
-    grid_o.edges3 = edges3;
     grid_o.span = span;
     grid_o.half_blocks = half_blocks;
     grid_o.stride[0] = BLOCK_W'(1);
@@ -64,7 +62,6 @@ module gridrt_grid_config (
       end
     end else if (load) begin
       for (int unsigned a = 0; a < 3; a++) begin
-        edges3[a] <= (EDGE_W + 2)'(edges[a]) + {1'b0, edges[a], 1'b0};
         bits[a] <= half_blocks[a];
         addend[a] <= {edges[a], 1'b0};
       end

@@ -287,9 +287,9 @@ module gridrt_setup #(
     for (int unsigned a = 0; a < 3; a++) start_o.neg[a] = d_o[a][B];
   end
 
-  // Traversal alone needs the edges' triples, and blocks are numbered from x on.
+  // Blocks are numbered from x on.
   logic unused;
-  assign unused = &{1'b0, grid_i.edges3, grid_i.stride[0]};
+  assign unused = &{1'b0, grid_i.stride[0]};
 
 `ifdef GRIDRT_ASSERT
   always_ff @(posedge clk_i) begin

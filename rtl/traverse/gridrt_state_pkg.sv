@@ -20,7 +20,6 @@ package gridrt_state_pkg;
   // Per axis x, y, z.
   typedef struct packed {
     logic [2:0][EDGE_W-1:0] edges;  // lattice steps of a voxel
-    logic [2:0][EDGE_W+1:0] edges3;  // three times that
     logic [2:0][SPAN_W-1:0] span;  // lattice steps of all blocks, 2 half_blocks edge
     logic [2:0][AXIS_W-1:0] half_blocks;  // blocks of 2x2x2 voxels
     logic [2:0][BLOCK_W-1:0] stride;  // a block's address is x + y stride_y + z stride_z

@@ -6,6 +6,7 @@
 #include <ostream>
 
 #include "tests/rtl/march_model.hpp"
+#include "tests/rtl/ports.hpp"
 
 namespace gridrt::march {
 
@@ -15,11 +16,8 @@ class Put {
  public:
   explicit Put(Wide& wide) : wide_(&wide) {}
   void operator()(std::int64_t value, int width) {
-    for (int i = 0; i < width; ++i, ++at_) {
-      auto& word = (*wide_)[static_cast<std::size_t>(at_ / 32)];
-      const std::uint32_t bit = 1U << (at_ % 32);
-      word = ((value >> i) & 1) != 0 ? word | bit : word & ~bit;
-    }
+    rtl::put_bits(*wide_, at_, width, static_cast<std::uint64_t>(value));
+    at_ += width;
   }
 
  private:
@@ -33,12 +31,8 @@ class Get {
  public:
   explicit Get(const Wide& wide) : wide_(&wide) {}
   std::int64_t operator()(int width) {
-    std::int64_t value = 0;
-    for (int i = 0; i < width; ++i, ++at_) {
-      const std::uint32_t word = (*wide_)[static_cast<std::size_t>(at_ / 32)];
-      value |= std::int64_t{(word >> (at_ % 32)) & 1U} << i;
-    }
-    return value;
+    at_ += width;
+    return static_cast<std::int64_t>(rtl::get_bits(*wide_, at_ - width, width));
   }
   std::int64_t with_sign(int width) {
     const std::int64_t v = (*this)(width);
@@ -56,7 +50,6 @@ void put_grid(Wide& wide, const Grid& g) {
   for (int a = 0; a < 3; ++a) put(g.stride[a], 12);
   for (int a = 0; a < 3; ++a) put(g.half_blocks[a], 10);
   for (int a = 0; a < 3; ++a) put(g.span[a], 19);
-  for (int a = 0; a < 3; ++a) put(std::int64_t{3} * g.edge[a], 20);
   for (int a = 0; a < 3; ++a) put(g.edge[a], 18);
 }
 

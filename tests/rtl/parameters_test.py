@@ -44,6 +44,7 @@ CASES = [
     ("gridrt_engine", {"TUS": 3}, None),
     ("gridrt_shell", {"B": 12, "PES": 2, "MAX_PAYLOAD": 4194304, "LOG_WORDS": 64}, None),
     ("gridrt_shell", {"PES": 1, "BLOCKS": 64, "CELLS": 100, "REFS": 200, "TRIS": 50}, None),
+    ("gridrt_engine", {"AHEAD": 16}, None),
     ("gridrt_engine", {"AHEAD": 1, "CANCEL": 0, "MASK": 0, "FEEDBACK": 0}, None),
 ]
 

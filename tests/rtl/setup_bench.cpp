@@ -20,18 +20,6 @@ struct Ray {
   bool any_hit = false;
 };
 
-template <class Port>
-std::int64_t get_port(const Port& port, int from, int width) {
-  if constexpr (std::is_integral_v<Port>) {
-    return static_cast<std::int64_t>((std::uint64_t{port} >> from) &
-                                     ((std::uint64_t{1} << width) - 1));
-  } else {
-    Get<Port> get(port);
-    get(from);
-    return get(width);
-  }
-}
-
 std::uint64_t packed(const glm::ivec3& p) {
   return static_cast<std::uint64_t>(p.x) | (static_cast<std::uint64_t>(p.y) << kBits) |
          (static_cast<std::uint64_t>(p.z) << (2 * kBits));
@@ -49,7 +37,7 @@ void check(Vgridrt_setup& rtl, const Grid& grid, const Ray& ray) {
   ASSERT_EQ(rtl.any_hit_o, ray.any_hit);
   ASSERT_EQ(rtl.miss_o, s.p0 == s.p1);
   for (int a = 0; a < 3; ++a) {
-    const std::int64_t d = get_port(rtl.d_o, a * (kBits + 1), kBits + 1);
+    const auto d = static_cast<std::int64_t>(rtl::get_bits(rtl.d_o, a * (kBits + 1), kBits + 1));
     ASSERT_EQ((d >> kBits) != 0 ? d - (std::int64_t{2} << kBits) : d, s.p1[a] - s.p0[a]);
   }
   if (s.p0 == s.p1) return;
