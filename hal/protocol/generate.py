@@ -2,7 +2,8 @@
 
 usage: generate.py protocol.toml OUTPUT_DIRECTORY
 
-Writes gridrt_protocol.hpp, gridrt_protocol_pkg.sv and protocol.md. The output depends on the
+Writes gridrt_protocol.hpp, gridrt_protocol_pkg.sv and protocol.md, and of the USB device
+gridrt_usb.hpp, gridrt_usb_pkg.sv and gridrt_usb.py. The output depends on the
 source alone. A mistake in the source ends the run with status 1 and nothing written.
 """
 
@@ -14,6 +15,7 @@ from document import document
 from model import SourceError
 from source import read_protocol
 from systemverilog import sv_package
+from usb_output import usb_document, usb_header, usb_module, usb_package
 
 
 def main(arguments: list[str]) -> int:
@@ -25,7 +27,10 @@ def main(arguments: list[str]) -> int:
         files = {
             "gridrt_protocol.hpp": cpp_header(protocol),
             "gridrt_protocol_pkg.sv": sv_package(protocol),
-            "protocol.md": document(protocol),
+            "protocol.md": document(protocol) + usb_document(protocol),
+            "gridrt_usb.hpp": usb_header(protocol),
+            "gridrt_usb_pkg.sv": usb_package(protocol),
+            "gridrt_usb.py": usb_module(protocol),
         }
     except SourceError as error:
         print(f"generate.py: {error}", file=sys.stderr)

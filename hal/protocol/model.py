@@ -63,6 +63,7 @@ class Struct:
     bytes: int
     fields: tuple[ByteField, ...]
     report_id: int | None = None
+    report_kinds: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -116,6 +117,17 @@ class Window:
 
 
 @dataclass(frozen=True)
+class Usb:
+    """Numbers and texts of the USB device; descriptors are made in usb.py."""
+
+    numbers: tuple[Constant, ...]
+    texts: dict[str, str]
+
+    def __getitem__(self, name: str) -> int:
+        return next(n.value for n in self.numbers if n.name == name)
+
+
+@dataclass(frozen=True)
 class Protocol:
     constants: tuple[Constant, ...]
     enums: tuple[Enum, ...]
@@ -124,6 +136,7 @@ class Protocol:
     layouts: tuple[Layout, ...]
     reports: tuple[Struct, ...]
     windows: tuple[Window, ...]
+    usb: Usb
 
     def layout(self, name: str) -> Layout:
         return next(layout for layout in self.layouts if layout.name == name)

@@ -5,7 +5,7 @@ import tomllib
 from pathlib import Path
 
 from model import (TYPE_BYTES, BitField, ByteField, Constant, Enum, EnumValue, Layout, Protocol,
-                   Record, SourceError, Struct, Window)
+                   Record, SourceError, Struct, Usb, Window)
 
 CPP_KEYWORDS = frozenset(
     "alignas alignof and asm auto bool break case catch char class const constexpr continue "
@@ -65,10 +65,10 @@ def unique(values: list, place: str, what: str) -> None:
         seen.add(value)
 
 
-def read_constants(table: dict) -> tuple[Constant, ...]:
+def read_constants(table: dict, group: str = "protocol") -> tuple[Constant, ...]:
     out = []
     for name, entry in table.items():
-        place = f"protocol.{name}"
+        place = f"{group}.{name}"
         snake_name(name, place)
         check_keys(entry, place, {"value", "doc"})
         out.append(Constant(name, integer(entry["value"], place, 0, 2**32 - 1),
@@ -129,16 +129,25 @@ def read_struct(name: str, table: dict) -> Struct:
     return Struct(name, text(table["doc"], f"{place}.doc"), size, fields)
 
 
+REPORT_KINDS = ("feature", "input", "output")
+
+
 def read_report(name: str, table: dict, report_bytes: int) -> Struct:
     place = f"reports.{name}"
     camel_name(name, place)
-    check_keys(table, place, {"id", "doc", "fields"})
+    check_keys(table, place, {"id", "doc", "fields"}, {"kinds"})
+    kinds = table.get("kinds", ["feature"])
+    require(isinstance(kinds, list) and kinds, f"{place}.kinds", "must be a list that is not empty")
+    for kind in kinds:
+        require(kind in REPORT_KINDS, f"{place}.kinds",
+                f"may hold {', '.join(REPORT_KINDS)}, not '{kind}'")
+    unique(kinds, f"{place}.kinds", "kind")
     fields = read_byte_fields(table["fields"], place)
     size = fields[-1].offset + fields[-1].bytes
     require(size < report_bytes, place,
             f"its {size} bytes and the id do not fit a report of {report_bytes}")
     return Struct(f"{name}Report", text(table["doc"], f"{place}.doc"), size, fields,
-                  integer(table["id"], f"{place}.id", 1, 255))
+                  integer(table["id"], f"{place}.id", 1, 255), tuple(kinds))
 
 
 def read_record(name: str, table: dict, header: Struct) -> Record:
@@ -226,6 +235,40 @@ def read_window(name: str, table: dict, reports: tuple[Struct, ...]) -> Window:
     return Window(name, base, report, "read" in access, "write" in access)
 
 
+USB_NUMBERS = {  # name: largest value
+    "vendor_id": 0xFFFF, "product_id": 0xFFFF, "usb_release": 0x0210, "device_release": 0x9999,
+    "configuration": 255, "bulk_interface": 1, "hid_interface": 1, "bulk_out": 0x0F,
+    "bulk_in": 0x8F, "interrupt_out": 0x0F, "interrupt_in": 0x8F, "control_packet": 64,
+    "bulk_packet_high": 512, "bulk_packet_full": 64, "interrupt_packet": 64,
+    "interrupt_interval_high": 16, "interrupt_interval_full": 255, "max_power": 250,
+    "microsoft_request": 255, "manufacturer_string": 255, "product_string": 255,
+    "serial_string": 255, "bulk_string": 255, "hid_string": 255,
+}
+USB_TEXTS = {"manufacturer", "product", "bulk", "hid", "interface_guid"}
+
+
+def read_usb(table: dict, report_bytes: int) -> Usb:
+    check_keys(table, "usb", {"numbers", "texts"})
+    check_keys(table["numbers"], "usb.numbers", set(USB_NUMBERS))
+    check_keys(table["texts"], "usb.texts", USB_TEXTS)
+    for name, value in table["texts"].items():
+        require(text(value, f"usb.texts.{name}").isascii() and len(value) <= 126,
+                f"usb.texts.{name}", "must be at most 126 characters of ASCII")
+    numbers = read_constants(table["numbers"], "usb.numbers")
+    for n in numbers:
+        least = 0x81 if n.name.endswith("_in") else 0 if n.name.endswith("_interface") else 1
+        integer(n.value, f"usb.numbers.{n.name}", least, USB_NUMBERS[n.name])
+    usb = Usb(numbers, dict(table["texts"]))
+    unique([usb["bulk_interface"], usb["hid_interface"]], "usb.numbers", "interface")
+    unique([n.value for n in numbers if n.name.endswith(("_in", "_out"))], "usb.numbers",
+           "endpoint")
+    unique([n.value for n in numbers if n.name.endswith("_string")], "usb.numbers",
+           "string index")
+    require(usb["interrupt_packet"] == report_bytes, "usb.numbers.interrupt_packet",
+            f"must be report_bytes, {report_bytes}")
+    return usb
+
+
 def read_protocol(path: Path) -> Protocol:
     """The checked content of the file; SourceError names the file and the place."""
     try:
@@ -240,7 +283,8 @@ def read_protocol(path: Path) -> Protocol:
 
 def build(source: dict) -> Protocol:
     check_keys(source, "top level",
-               {"protocol", "enums", "structs", "records", "layouts", "reports", "registers"})
+               {"protocol", "enums", "structs", "records", "layouts", "reports", "registers",
+                "usb"})
     constants = read_constants(source["protocol"])
     report_bytes = next((c.value for c in constants if c.name == "report_bytes"), None)
     require(report_bytes is not None, "protocol.report_bytes", "is missing")
@@ -256,4 +300,5 @@ def build(source: dict) -> Protocol:
     unique([w.base for w in windows], "registers", "base")
     names = [x.name for group in (enums, structs, records, reports) for x in group]
     unique(names, "top level", "type")
-    return Protocol(constants, enums, structs, records, layouts, reports, windows)
+    return Protocol(constants, enums, structs, records, layouts, reports, windows,
+                    read_usb(source["usb"], report_bytes))

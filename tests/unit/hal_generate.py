@@ -16,7 +16,8 @@ import systemverilog  # noqa: E402
 from model import SourceError  # noqa: E402
 
 SOURCE = PROTOCOL / "protocol.toml"
-NAMES = ("gridrt_protocol.hpp", "gridrt_protocol_pkg.sv", "protocol.md")
+NAMES = ("gridrt_protocol.hpp", "gridrt_protocol_pkg.sv", "protocol.md", "gridrt_usb.hpp",
+         "gridrt_usb_pkg.sv", "gridrt_usb.py")
 
 
 def run(toml: Path, folder: Path) -> subprocess.CompletedProcess:
