@@ -40,6 +40,12 @@ std::optional<ExactHit> intersect(const glm::i64vec3& p0, const glm::i64vec3& d,
   return ExactHit{det, u, v, tn};
 }
 
+/// The nearest double; the short way for what 64 bits hold.
+double to_double(Int128 x) {
+  const auto low = static_cast<std::int64_t>(x);
+  return low == x ? static_cast<double>(low) : static_cast<double>(x);
+}
+
 }  // namespace
 
 std::optional<ExactHit> intersect_exact(const glm::ivec3& p0, const glm::ivec3& p1,
@@ -63,13 +69,13 @@ std::uint32_t hit_quotient(const ExactHit& hit) {
 }
 
 HitParameters hit_parameters(const Segment& segment, const ExactHit& hit) {
-  const auto det = static_cast<double>(hit.det);
+  const auto det = to_double(hit.det);
   // Both weights are rounded quotients of exact integers and both terms are >= 0, so nothing
   // cancels: the relative error is that of t0 and t1 plus a few units in the last place.
-  const double far_weight = static_cast<double>(hit.tn) / det;
-  const double near_weight = static_cast<double>(hit.det - hit.tn) / det;
-  return {segment.t0 * near_weight + segment.t1 * far_weight, static_cast<double>(hit.u) / det,
-          static_cast<double>(hit.v) / det};
+  const double far_weight = to_double(hit.tn) / det;
+  const double near_weight = to_double(hit.det - hit.tn) / det;
+  return {segment.t0 * near_weight + segment.t1 * far_weight, to_double(hit.u) / det,
+          to_double(hit.v) / det};
 }
 
 }  // namespace gridrt

@@ -1,7 +1,9 @@
 #include "host/grid/segment.hpp"
 
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 
 #include <fmt/format.h>
 
@@ -14,6 +16,12 @@ namespace {
 
 /// Magnitudes for which no product or quotient of the filter comes near under- or overflow.
 bool is_moderate(double x) { return x == 0.0 || (std::abs(x) > 0x1p-200 && std::abs(x) < 0x1p200); }
+
+/// 2^k; a lattice's scale is far within (-1022, 1023), and so are products of moderate numbers
+/// with it: exact, and much faster than ldexp.
+double power_of_two(int k) {
+  return std::bit_cast<double>(static_cast<std::uint64_t>(1023 + k) << 52);
+}
 
 constexpr Cut kUndecided{};
 constexpr Cut kMiss{Cut::Outcome::kMiss, glm::ivec3{0}, glm::ivec3{0}, 0.0, 0.0};
@@ -59,9 +67,9 @@ Cut cut_filtered(const Lattice& lattice, const Ray& ray) {
     const auto i = static_cast<std::size_t>(a);
     if (!is_moderate(ray.origin[a]) || !is_moderate(ray.direction[a])) return kUndecided;
     const TwoSum offset = two_diff(ray.origin[a], lattice.lo[a]);
-    scaled.origin[i] = {std::ldexp(offset.sum, lattice.scale[a]),
-                        std::ldexp(offset.error, lattice.scale[a]), 0.0};
-    scaled.direction[i] = std::ldexp(ray.direction[a], lattice.scale[a]);
+    const double step = power_of_two(lattice.scale[a]);
+    scaled.origin[i] = {offset.sum * step, offset.error * step, 0.0};
+    scaled.direction[i] = ray.direction[a] * step;
   }
   if (!is_moderate(ray.tmin) || (std::isfinite(ray.tmax) && !is_moderate(ray.tmax))) {
     return kUndecided;

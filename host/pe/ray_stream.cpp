@@ -11,6 +11,7 @@
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "host/pe/ray_stream.cpp"
+#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -41,6 +42,10 @@ class Stream {
         if (live == 0) break;
       }
       const Looked looked = look(layout_, march_);
+      // The memory of all voxels first, then the work on each.
+      for (unsigned with = looked.occupied & live; with != 0; with &= with - 1) {
+        fetch(static_cast<std::size_t>(std::countr_zero(with)));
+      }
       for (unsigned with = looked.occupied & live; with != 0; with &= with - 1) {
         test(static_cast<std::size_t>(std::countr_zero(with)));
       }
@@ -66,6 +71,16 @@ class Stream {
       return true;
     }
     return false;
+  }
+
+  void fetch(std::size_t lane) const {
+    constexpr std::size_t kLine = 16;  // floats
+    const LayoutCell& cell = layout_.cell(layout_.codes()[march_.voxel[lane]]);
+    const float* const block = layout_.block(cell.first);
+    for (std::size_t i = 0; i < kBlockRows * hn::Lanes(Floats{}); i += kLine) {
+      hwy::Prefetch(block + i);
+    }
+    hwy::Prefetch(layout_.ids(cell.first));
   }
 
   void test(std::size_t lane) {

@@ -1,13 +1,16 @@
 // GridRT beside Embree 3: the same scenes, the same rays, the same run.
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <ctime>
-#include <map>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "host/image/image.hpp"
+#include "host/pe/ray_stream.hpp"
 #include "host/scene/load.hpp"
 #include "tests/bench/contender.hpp"
 
@@ -17,13 +20,12 @@ namespace {
 struct Options {
   std::string mesh = "builtin:teapot";
   int copies = 18;
-  int width = 1024;
-  int height = 1024;
+  int width = 512;
+  int height = 512;
   int rounds = 5;
   std::string clock = "wall";
   std::string simd;
   std::vector<int> threads{1, 2};
-  bool quick = false;
 };
 
 double now(const Options& options, int threads) {
@@ -52,36 +54,34 @@ std::vector<double> best_times(const Options& options, std::size_t contenders, i
   return best;
 }
 
+std::vector<Hit> closest_hits(const Scene& scene, const RaySet& rays) {
+  const Image image = build_image(scene, {.with_scene = false}).value();
+  std::vector<Segment> segments;
+  for (const Ray& ray : rays.rays) segments.push_back(make_segment(image.lattice(), ray));
+  std::vector<Hit> hits(segments.size());
+  const auto device = open_device({.name = "omp"}).value();
+  if (!device->load(image) || !device->trace(segments, Query::kClosestHit, hits)) std::abort();
+  return hits;
+}
+
 void run_scene(const Options& options, const std::string& name, const Scene& scene) {
   std::vector<std::unique_ptr<Contender>> all;
   for (const Part part : {Part::kPes, Part::kDevice, Part::kProgram}) {
-    all.push_back(gridrt_contender(part, options.simd));
+    all.push_back(gridrt_contender({.part = part, .simd = options.simd}));
   }
   all.push_back(embree_contender(1, false));
   all.push_back(embree_contender(16, false));
-  constexpr std::size_t kOurs = 3;
+  constexpr std::size_t kEmbree = 3;
   fmt::print("\n{}: {} triangles\n", name, scene.triangles.size());
   for (const int threads : options.threads) {
-    const auto build = best_times(options, all.size(), threads,
-                                  [&](std::size_t i) { all[i]->build(scene, threads); });
+    const std::array<std::size_t, 2> builders{1, kEmbree};
+    for (auto& contender : all) contender->build(scene, threads);
+    const auto build = best_times(options, builders.size(), threads,
+                                  [&](std::size_t i) { all[builders[i]]->build(scene, threads); });
     fmt::print("  {} thread{}, build: GridRT {:.1f} ms, Embree {:.1f} ms, ratio {:.2f}\n", threads,
-               threads > 1 ? "s" : "", 1e3 * build[1], 1e3 * build[kOurs], build[kOurs] / build[1]);
+               threads > 1 ? "s" : "", 1e3 * build[0], 1e3 * build[1], build[1] / build[0]);
     const RaySet primary = primary_rays(scene, options.width, options.height);
-    auto reference = gridrt_contender(Part::kDevice);
-    reference->build(scene, threads);
-    std::vector<Hit> hits(primary.rays.size());
-    {
-      DeviceOptions device_options;
-      device_options.name = "omp";
-      auto device = open_device(device_options).value();
-      ImageOptions image_options;
-      image_options.with_scene = false;
-      const Image image = build_image(scene, image_options).value();
-      (void)device->load(image);
-      std::vector<Segment> segments;
-      for (const Ray& ray : primary.rays) segments.push_back(make_segment(image.lattice(), ray));
-      (void)device->trace(segments, Query::kClosestHit, hits);
-    }
+    const std::vector<Hit> hits = closest_hits(scene, primary);
     for (const RaySet& set : {primary, shuffled(primary), bounced_rays(scene, primary, hits)}) {
       for (auto& contender : all) contender->prepare(set);
       const auto times =
@@ -95,8 +95,8 @@ void run_scene(const Options& options, const std::string& name, const Scene& sce
         fmt::print(
             "  {:<9} {} thr  {:<26} {:8.3f} Mray/s  x single {:5.2f}  x packets {:5.2f}"
             "  other ids {:.4f} %\n",
-            set.name, threads, all[i]->name(), n / times[i] * 1e-6, times[kOurs] / times[i],
-            times[kOurs + 1] / times[i], 100.0 * static_cast<double>(differ) / n);
+            set.name, threads, all[i]->name(), n / times[i] * 1e-6, times[kEmbree] / times[i],
+            times[kEmbree + 1] / times[i], 100.0 * static_cast<double>(differ) / n);
         std::fflush(stdout);
       }
     }
@@ -109,6 +109,9 @@ int run(const Options& options) {
     fmt::print(stderr, "bench: {}\n", mesh.error().message);
     return 1;
   }
+  fmt::print("{} x {} rays a set, best of {} rounds, clock: {}, vectors: {}\n", options.width,
+             options.height, options.rounds, options.clock,
+             options.simd.empty() ? stream_kernel("")->name : options.simd);
   const std::string name = options.mesh.substr(options.mesh.find_last_of('/') + 1);
   run_scene(options, name, repeat(*mesh, 1));
   if (options.copies > 1) {

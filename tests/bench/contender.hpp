@@ -38,7 +38,17 @@ enum class Part {
   kDevice,   ///< segments to hits with t, u, v, through the packets
   kProgram,  ///< rays of the scene to hits with t, u, v
 };
-std::unique_ptr<Contender> gridrt_contender(Part part, const std::string& simd = "");
+struct GridrtChoice {
+  Part part = Part::kProgram;
+  std::string simd = {};  ///< as DeviceOptions::simd
+  int bits = kDefaultBits;
+};
+std::unique_ptr<Contender> gridrt_contender(const GridrtChoice& choice);
+
+/// GridRT's voxels and walk, but Moeller and Trumbore's test on the vertices and rays as they are
+/// given, in plain float or double, one triangle after the other.
+enum class Precision { kSingle, kDouble };
+std::unique_ptr<Contender> floating_contender(Precision precision);
 
 /// Embree 3: one ray a call (width 1) or packets of 4, 8 or 16.
 std::unique_ptr<Contender> embree_contender(int width, bool robust);

@@ -42,7 +42,8 @@ std::unique_ptr<CommittedImage> commit(const Image& image) {
 
 class GridRT final : public Contender {
  public:
-  GridRT(Part part, std::string simd) : part_(part), simd_(std::move(simd)) {}
+  explicit GridRT(const GridrtChoice& choice)
+      : part_(choice.part), simd_(choice.simd), bits_(choice.bits) {}
 
   [[nodiscard]] std::string name() const override {
     const char* const part = part_ == Part::kPes      ? "PEs alone"
@@ -54,6 +55,7 @@ class GridRT final : public Contender {
   void build(const Scene& scene, int threads) override {
     ImageOptions options;
     options.with_scene = false;
+    options.bits = bits_;
     open(threads);
     const Image image = valid(build_image(scene, options_for(options, device_->capabilities())));
     lattice_ = image.lattice();
@@ -135,6 +137,7 @@ class GridRT final : public Contender {
 
   Part part_;
   std::string simd_;
+  int bits_;
   int threads_ = 0;
   std::unique_ptr<Device> device_;
   std::unique_ptr<CommittedImage> image_;
@@ -152,8 +155,8 @@ class GridRT final : public Contender {
 
 }  // namespace
 
-std::unique_ptr<Contender> gridrt_contender(Part part, const std::string& simd) {
-  return std::make_unique<GridRT>(part, simd);
+std::unique_ptr<Contender> gridrt_contender(const GridrtChoice& choice) {
+  return std::make_unique<GridRT>(choice);
 }
 
 }  // namespace gridrt::bench
