@@ -25,7 +25,7 @@ TEST(GivenTruth, NamesAllTrianglesThatAreEquallyNear) {
   EXPECT_EQ(tracer.closest({{0.25, 0.75, 1}, {0, 0, -1}}), Ids{1});
   EXPECT_EQ(tracer.closest({{0.5, 0.5, 1}, {0, 0, -1}}), (Ids{0, 1}));        // the diagonal
   EXPECT_EQ(tracer.closest({{0.375, 0.375, -0.5}, {0, 0, 3}}), (Ids{0, 1}));  // from below
-  EXPECT_EQ(tracer.closest({{1.5, 0.5, 1}, {0, 0, -1}}), Ids{2});             // beside it
+  EXPECT_EQ(tracer.closest({{1.25, 0.25, 1}, {0, 0, -1}}), Ids{2});           // beside it
   EXPECT_EQ(tracer.closest({{0.75, 0.25, -0.5}, {0, 0, -1}}), Ids{2});        // already past it
   EXPECT_EQ(tracer.closest({{0.75, 0.25, 1}, {0, 0, 1}}), Ids{});             // the other way
   EXPECT_EQ(tracer.closest({{-1, 0.5, 0}, {1, 0, 0}}), Ids{});                // in its plane
