@@ -90,4 +90,15 @@ def document(protocol: Protocol) -> str:
     out.append(table(["address", "words", "window", "access"],
                      [[f"{w.base:#05x}", w.words, w.name, access[w.readable, w.writable]]
                       for w in protocol.windows]))
+    out.append("## Other registers of the soft core\n\n")
+    for p in protocol.peripherals:
+        out.append(f"### {p.name}\n\n{p.doc}\n\n")
+        rows = []
+        for r in p.registers:
+            rows.append([f"{r.address:#05x}", f"`{r.name}`", r.words,
+                         access[r.readable, r.writable], r.doc])
+            rows += [["", f"`{r.name}.{f.name}`",
+                      f"bit {f.bit}" if f.width == 1 else f"bits {f.bit}-{f.bit + f.width - 1}",
+                      "", f.doc] for f in r.fields]
+        out.append(table(["address", "register", "words", "access", "meaning"], rows))
     return "".join(out).rstrip("\n") + "\n"

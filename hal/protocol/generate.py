@@ -2,8 +2,8 @@
 
 usage: generate.py protocol.toml OUTPUT_DIRECTORY
 
-Writes gridrt_protocol.hpp, gridrt_protocol_pkg.sv and protocol.md, and of the USB device
-gridrt_usb.hpp, gridrt_usb_pkg.sv and gridrt_usb.py. The output depends on the
+Writes gridrt_protocol.hpp, gridrt_firmware_protocol.hpp, gridrt_protocol_pkg.sv and protocol.md,
+and of the USB device gridrt_usb.hpp, gridrt_usb_pkg.sv and gridrt_usb.py. The output depends on the
 source alone. A mistake in the source ends the run with status 1 and nothing written.
 """
 
@@ -12,6 +12,7 @@ from pathlib import Path
 
 from cpp import cpp_header
 from document import document
+from firmware import firmware_header
 from model import SourceError
 from source import read_protocol
 from systemverilog import sv_package
@@ -26,6 +27,7 @@ def main(arguments: list[str]) -> int:
         protocol = read_protocol(Path(arguments[0]))
         files = {
             "gridrt_protocol.hpp": cpp_header(protocol),
+            "gridrt_firmware_protocol.hpp": firmware_header(protocol),
             "gridrt_protocol_pkg.sv": sv_package(protocol),
             "protocol.md": document(protocol) + usb_document(protocol),
             "gridrt_usb.hpp": usb_header(protocol),

@@ -117,6 +117,35 @@ class Window:
 
 
 @dataclass(frozen=True)
+class RegisterField:
+    name: str
+    bit: int
+    width: int
+    doc: str
+
+
+@dataclass(frozen=True)
+class Register:
+    """`words` words from `address` on."""
+
+    name: str
+    address: int
+    words: int
+    readable: bool
+    writable: bool
+    doc: str
+    fields: tuple[RegisterField, ...]
+
+
+@dataclass(frozen=True)
+class Peripheral:
+    name: str
+    base: int
+    doc: str
+    registers: tuple[Register, ...]
+
+
+@dataclass(frozen=True)
 class Usb:
     """Numbers and texts of the USB device; descriptors are made in usb.py."""
 
@@ -137,6 +166,7 @@ class Protocol:
     reports: tuple[Struct, ...]
     windows: tuple[Window, ...]
     usb: Usb
+    peripherals: tuple[Peripheral, ...]
 
     def layout(self, name: str) -> Layout:
         return next(layout for layout in self.layouts if layout.name == name)

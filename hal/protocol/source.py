@@ -4,65 +4,13 @@ import re
 import tomllib
 from pathlib import Path
 
+from checks import camel_name, check_keys, integer, require, snake_name, text, unique
 from model import (TYPE_BYTES, BitField, ByteField, Constant, Enum, EnumValue, Layout, Protocol,
-                   Record, SourceError, Struct, Usb, Window)
+                   Record, SourceError, Struct, Usb)
+from peripherals import read_peripheral, read_window
 
-CPP_KEYWORDS = frozenset(
-    "alignas alignof and asm auto bool break case catch char class const constexpr continue "
-    "decltype default delete do double else enum explicit export extern false float for friend "
-    "goto if inline int long mutable namespace new noexcept not nullptr operator or private "
-    "protected public register requires return short signed sizeof static struct switch template "
-    "this throw true try typedef typeid typename union unsigned using virtual void volatile while "
-    "xor".split())
 MAX_RECORD_BITS = 128  # a record with widths from the header, each at most 32
 MAX_WIDTH = 32
-
-
-def require(condition: bool, place: str, message: str) -> None:
-    if not condition:
-        raise SourceError(f"{place}: {message}")
-
-
-def check_keys(table: dict, place: str, needed: set[str], optional: set[str] = frozenset()) -> None:
-    require(isinstance(table, dict), place, "must be a table")
-    for key in sorted(needed - table.keys()):
-        raise SourceError(f"{place}: '{key}' is missing")
-    for key in sorted(table.keys() - needed - optional):
-        raise SourceError(f"{place}: unknown key '{key}'")
-
-
-def integer(value: object, place: str, low: int, high: int) -> int:
-    require(isinstance(value, int) and not isinstance(value, bool), place, "must be an integer")
-    require(low <= value <= high, place, f"{value} is outside [{low}, {high}]")
-    return value
-
-
-def text(value: object, place: str) -> str:
-    require(isinstance(value, str) and value.strip() == value and value != "", place,
-            "must be a text that is not empty")
-    require("\n" not in value and "|" not in value and "*/" not in value and "\\" not in value,
-            place, "may hold no line break, '|', '*/' or backslash")
-    return value
-
-
-def camel_name(value: object, place: str) -> str:
-    require(isinstance(value, str) and re.fullmatch(r"[A-Z][A-Za-z0-9]*", value) is not None, place,
-            f"'{value}' is not a CamelCase name")
-    return value
-
-
-def snake_name(value: object, place: str) -> str:
-    require(isinstance(value, str) and re.fullmatch(r"[a-z][a-z0-9]*(_[a-z0-9]+)*", value)
-            is not None, place, f"'{value}' is not a lower_case name")
-    require(value not in CPP_KEYWORDS, place, f"'{value}' is a keyword of C++")
-    return value
-
-
-def unique(values: list, place: str, what: str) -> None:
-    seen = set()
-    for value in values:
-        require(value not in seen, place, f"{what} {value} appears twice")
-        seen.add(value)
 
 
 def read_constants(table: dict, group: str = "protocol") -> tuple[Constant, ...]:
@@ -217,24 +165,6 @@ def read_layouts(tables: dict, enums: tuple[Enum, ...], records: tuple[Record, .
     return tuple(out)
 
 
-WINDOW_BYTES = 64  # a window starts on a multiple of it and takes no more
-ACCESSES = ("read", "write", "read and write")
-
-
-def read_window(name: str, table: dict, reports: tuple[Struct, ...]) -> Window:
-    place = f"registers.{name}"
-    check_keys(table, place, {"base", "access"})
-    report = next((r for r in reports if r.name == f"{name}Report"), None)
-    require(report is not None, place, "there is no report of this name")
-    base = integer(table["base"], f"{place}.base", 0, 2**16 - WINDOW_BYTES)
-    require(base % WINDOW_BYTES == 0, f"{place}.base", f"is not a multiple of {WINDOW_BYTES}")
-    require(report.bytes % 4 == 0, place,
-            f"the report's {report.bytes} bytes are not whole words of 4")
-    access = table["access"]
-    require(access in ACCESSES, f"{place}.access", f"must be one of: {', '.join(ACCESSES)}")
-    return Window(name, base, report, "read" in access, "write" in access)
-
-
 USB_NUMBERS = {  # name: largest value
     "vendor_id": 0xFFFF, "product_id": 0xFFFF, "usb_release": 0x0210, "device_release": 0x9999,
     "configuration": 255, "bulk_interface": 1, "hid_interface": 1, "bulk_out": 0x0F,
@@ -284,7 +214,7 @@ def read_protocol(path: Path) -> Protocol:
 def build(source: dict) -> Protocol:
     check_keys(source, "top level",
                {"protocol", "enums", "structs", "records", "layouts", "reports", "registers",
-                "usb"})
+                "peripherals", "usb"})
     constants = read_constants(source["protocol"])
     report_bytes = next((c.value for c in constants if c.name == "report_bytes"), None)
     require(report_bytes is not None, "protocol.report_bytes", "is missing")
@@ -297,8 +227,9 @@ def build(source: dict) -> Protocol:
     reports = tuple(read_report(n, t, report_bytes) for n, t in source["reports"].items())
     unique([r.report_id for r in reports], "reports", "id")
     windows = tuple(read_window(n, t, reports) for n, t in source["registers"].items())
-    unique([w.base for w in windows], "registers", "base")
+    peripherals = tuple(read_peripheral(n, t) for n, t in source["peripherals"].items())
+    unique([x.base for x in (*windows, *peripherals)], "registers", "base")
     names = [x.name for group in (enums, structs, records, reports) for x in group]
     unique(names, "top level", "type")
     return Protocol(constants, enums, structs, records, layouts, reports, windows,
-                    read_usb(source["usb"], report_bytes))
+                    read_usb(source["usb"], report_bytes), peripherals)

@@ -120,6 +120,12 @@ def sv_package(protocol: Protocol) -> str:
         name = f"REGISTERS_{snake(w.name).upper()}"
         out.append(parameter(f"{name}_BASE", w.base, f"byte address; {w.report.doc}"))
         out.append(parameter(f"{name}_WORDS", w.words))
+    for p in protocol.peripherals:
+        for r in p.registers:
+            name = f"{snake(p.name)}_{r.name}".upper()
+            out.append(parameter(f"{name}_ADDRESS", r.address, r.doc))
+            for f in r.fields:
+                out.append(parameter(f"{name}_{f.name}_BIT".upper(), f.bit, f.doc))
     package = "".join(out).rstrip("\n") + "\n" + FOOTER
     check_names(package)
     return package

@@ -16,7 +16,7 @@ import systemverilog  # noqa: E402
 from model import SourceError  # noqa: E402
 
 SOURCE = PROTOCOL / "protocol.toml"
-NAMES = ("gridrt_protocol.hpp", "gridrt_protocol_pkg.sv", "protocol.md", "gridrt_usb.hpp",
+NAMES = ("gridrt_protocol.hpp", "gridrt_firmware_protocol.hpp", "gridrt_protocol_pkg.sv", "protocol.md", "gridrt_usb.hpp",
          "gridrt_usb_pkg.sv", "gridrt_usb.py")
 
 
@@ -82,8 +82,13 @@ class Output(unittest.TestCase):
         tables = (self.path / "protocol.md").read_text(encoding="utf-8")
         for line in ("| 88-91 | u32 | `margin` |", "| 51-101 | 3 x 17 | `p1` |",
                      "| from 26 | `base_bits` | `base` |", "### StatusReport (id 3)",
-                     "| 0x100 | 14 | Counters | read |"):
+                     "| 0x100 | 14 | Counters | read |", "| 0x404 | `answer` | 1 | write |"):
             self.assertIn(line, tables)
+        firmware = (self.path / "gridrt_firmware_protocol.hpp").read_text(encoding="utf-8")
+        for line in ("inline constexpr uint32_t kAnswerTagBit = 0x18U;",
+                     "inline constexpr uint32_t kErrorDetailAt = 0x4U;",
+                     "    {0x100, 14, 4, true, false},  // Counters"):
+            self.assertIn(line, firmware)
 
 
 def mutated(change):
@@ -132,6 +137,19 @@ MISTAKES = {
                     t["structs"]["ErrorBody"]["fields"].pop(1)), "not a multiple of 4"),
     "a field appears twice":
         (lambda t: field(t, "structs", "TraceHead", 1).update(name="count"), "field count appears"),
+    "two peripherals meet":
+        (lambda t: t["peripherals"]["Feed"].update(base=0x400), "base 1024 appears twice"),
+    "a peripheral is not aligned":
+        (lambda t: t["peripherals"]["Feed"].update(base=0x4C4), "not a multiple of 64"),
+    "a peripheral is too large":
+        (lambda t: t["peripherals"]["MailboxBody"]["registers"].append(
+            {"name": "more", "access": "read", "doc": "too much"}), "more than 64 bytes"),
+    "a register's fields overlap":
+        (lambda t: t["peripherals"]["Feed"]["registers"][0]["fields"][1].update(bit=0),
+         "0 is outside [1, 31]"),
+    "a register appears twice":
+        (lambda t: t["peripherals"]["Feed"]["registers"][1].update(name="source"),
+         "register source appears twice"),
     "a field is a keyword":
         (lambda t: field(t, "structs", "TraceHead", 1).update(name="union"), "keyword of C++"),
     "a field's name is not lower case":
