@@ -106,28 +106,41 @@ std::optional<Rational> meet_exactly(const Ray& ray, const std::array<Vector, 3>
 
 }  // namespace
 
-GivenTracer::GivenTracer(const Scene& scene) {
+GivenTracer::GivenTracer(const Scene& scene, Search search) {
+  std::vector<FloatBox> boxes;
   for (const auto& triangle : scene.triangles) {
     Corners& corners = triangles_.emplace_back();
     for (std::size_t k = 0; k < 3; ++k) {
       const glm::vec3& p = scene.positions[triangle[k]];
       corners.v[k] = {p.x, p.y, p.z};
     }
+    FloatBox& box = boxes.emplace_back(FloatBox{corners.v[0], corners.v[0]});
+    for (std::size_t a = 0; a < 3; ++a) {
+      box.lo[a] = std::min({corners.v[0][a], corners.v[1][a], corners.v[2][a]});
+      box.hi[a] = std::max({corners.v[0][a], corners.v[1][a], corners.v[2][a]});
+    }
   }
+  if (search == Search::kPruned) tree_.emplace(boxes);
 }
 
 std::vector<std::int64_t> GivenTracer::closest(const Ray& ray) const {
   std::vector<std::int64_t> ids;
   Rational best;
-  for (std::size_t id = 0; id < triangles_.size(); ++id) {
-    if (!may_meet(ray, triangles_[id].v)) continue;
+  const auto test = [&](std::size_t id) {
+    if (!may_meet(ray, triangles_[id].v)) return;
     const std::optional<Rational> t = meet_exactly(ray, triangles_[id].v);
-    if (!t || (!ids.empty() && *t > best)) continue;
+    if (!t || (!ids.empty() && *t > best)) return;
     if (ids.empty() || *t < best) {
       ids.clear();
       best = *t;
     }
     ids.push_back(static_cast<std::int64_t>(id));
+  };
+  if (tree_) {
+    tree_->each(ray, test);
+    std::ranges::sort(ids);
+  } else {
+    for (std::size_t id = 0; id < triangles_.size(); ++id) test(id);
   }
   return ids;
 }
