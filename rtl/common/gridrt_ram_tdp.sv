@@ -1,6 +1,7 @@
 // Block memory with two ports that each read every clock; port A writes too (while loading). Read
 // data comes one clock after the address, or two with OUTPUT_REGISTER. Depths above BANK are cut
-// into banks, so that no bits of the device's block memories are left unused.
+// into banks, so that no bits of the device's block memories are left unused. A bank that is not
+// read puts out zeros (the reset of a block memory's output), so the banks are joined by OR.
 module gridrt_ram_tdp #(
     parameter int unsigned WIDTH = 18,
     parameter int unsigned DEPTH = 1024,
@@ -19,15 +20,12 @@ module gridrt_ram_tdp #(
     output logic [    WIDTH-1:0] b_data_o
 );
   localparam int unsigned BANKS = (DEPTH + BANK - 1) / BANK;
-  localparam int unsigned LOW_W = (BANK > 1) ? $clog2(BANK) : 1;
-
-  localparam int unsigned SELECT_W = (BANKS > 1) ? $clog2(BANKS) : 1;
-  localparam int unsigned CHOICES = 1 << SELECT_W;
+  localparam int unsigned BANK_W = (BANK > 1) ? $clog2(BANK) : 1;
 
   if (WIDTH < 1 || DEPTH < 1) begin : gen_illegal
     $error("gridrt_ram_tdp: WIDTH and DEPTH must be positive");
   end
-  if (BANKS > 1 && (1 << LOW_W) != BANK) begin : gen_illegal_bank
+  if (BANKS > 1 && (1 << BANK_W) != BANK) begin : gen_illegal_bank
     $error("gridrt_ram_tdp: BANK must be a power of two");
   end
 
@@ -35,46 +33,40 @@ module gridrt_ram_tdp #(
   logic [WIDTH-1:0] a_now, b_now;
 
   for (genvar i = 0; i < BANKS; i++) begin : gen_bank
+    localparam int unsigned WORDS = (i == BANKS - 1) ? DEPTH - i * BANK : BANK;
+    localparam int unsigned LOW_W = (WORDS > 1) ? $clog2(WORDS) : 1;
     // Nothing reads while the memory is loaded, so no logic is wanted for that case.
     (* no_rw_check *)
-    logic [WIDTH-1:0] memory[BANK];
+    logic [WIDTH-1:0] memory[WORDS];
     logic [LOW_W-1:0] a_low, b_low;
-    logic a_here;
+    logic a_here, b_here;
     assign a_low = LOW_W'(a_address_i);
     assign b_low = LOW_W'(b_address_i);
     if (BANKS > 1) begin : gen_select
-      assign a_here = (a_address_i >> LOW_W) == ADDRESS_W'(i);
+      assign a_here = (a_address_i >> BANK_W) == ADDRESS_W'(i);
+      assign b_here = (b_address_i >> BANK_W) == ADDRESS_W'(i);
     end else begin : gen_always
       assign a_here = 1'b1;
+      assign b_here = 1'b1;
     end
     always_ff @(posedge clk_i) begin
-      if (a_enable_i) begin
-        if (a_write_i && a_here) memory[a_low] <= a_data_i;
-        else a_bank[i] <= memory[a_low];
-      end
+      if (a_enable_i && a_write_i && a_here) memory[a_low] <= a_data_i;
+      if (a_enable_i && !a_here) a_bank[i] <= '0;
+      else if (a_enable_i && !a_write_i) a_bank[i] <= memory[a_low];
     end
     always_ff @(posedge clk_i) begin
-      if (b_enable_i) b_bank[i] <= memory[b_low];
+      if (b_enable_i && !b_here) b_bank[i] <= '0;
+      else if (b_enable_i) b_bank[i] <= memory[b_low];
     end
   end
 
-  if (BANKS > 1) begin : gen_banks
-    // As many as the select can name, so that the choice is a plain tree of multiplexers.
-    logic [SELECT_W-1:0] a_selected, b_selected;
-    logic [CHOICES*WIDTH-1:0] a_choice, b_choice;
-    always_ff @(posedge clk_i) begin
-      if (a_enable_i) a_selected <= SELECT_W'(a_address_i >> LOW_W);
-      if (b_enable_i) b_selected <= SELECT_W'(b_address_i >> LOW_W);
+  always_comb begin
+    a_now = '0;
+    b_now = '0;
+    for (int unsigned i = 0; i < BANKS; i++) begin
+      a_now = a_now | a_bank[i];
+      b_now = b_now | b_bank[i];
     end
-    for (genvar i = 0; i < CHOICES; i++) begin : gen_choice
-      assign a_choice[i*WIDTH+:WIDTH] = a_bank[(i < BANKS) ? i : BANKS - 1];
-      assign b_choice[i*WIDTH+:WIDTH] = b_bank[(i < BANKS) ? i : BANKS - 1];
-    end
-    assign a_now = a_choice[32'(a_selected)*WIDTH+:WIDTH];
-    assign b_now = b_choice[32'(b_selected)*WIDTH+:WIDTH];
-  end else begin : gen_single
-    assign a_now = a_bank[0];
-    assign b_now = b_bank[0];
   end
 
   if (OUTPUT_REGISTER) begin : gen_register

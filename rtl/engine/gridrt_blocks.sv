@@ -49,7 +49,7 @@ module gridrt_blocks #(
     gridrt_ram_tdp #(
         .WIDTH(LOW_W),
         .DEPTH(BLOCKS),
-        .BANK((BLOCKS > 1024) ? 1024 : BLOCKS),
+        .BANK((BLOCKS > 2048) ? 2048 : BLOCKS),
         .OUTPUT_REGISTER(1'b1)
     ) u_low (
         .clk_i,

@@ -1,5 +1,5 @@
-// The cell records, {pe, count, first}: which references a voxel has and whose they are. 26 bits are
-// kept as 18 + 8, so that 8,192 of them take twelve block memories.
+// The cell records, {pe, count, first}: which references a voxel has and whose they are. 26 bits take
+// three block memories of 9 bits for each 2,048 of them.
 module gridrt_cells #(
     parameter int unsigned CELLS = 8192,
     parameter int unsigned EXPS  = 2,     // 1 or 2: the memory has two ports
@@ -13,7 +13,6 @@ module gridrt_cells #(
     output logic              [EXPS-1:0][RECORD_W-1:0] data_o  // two clocks after the address
 );
   localparam int unsigned ADDRESS_W = (CELLS > 1) ? $clog2(CELLS) : 1;
-  localparam int unsigned LOW_W = 18;
 
   if (CELLS < 1 || CELLS > (1 << CELL_W)) begin : gen_illegal_cells
     $error("gridrt_cells: CELLS must be 1 to 8192");
@@ -40,36 +39,20 @@ module gridrt_cells #(
   end
 
   gridrt_ram_tdp #(
-      .WIDTH(LOW_W),
-      .DEPTH(CELLS),
-      .BANK((CELLS > 1024) ? 1024 : CELLS),
-      .OUTPUT_REGISTER(1'b1)
-  ) u_low (
-      .clk_i,
-      .a_write_i(write),
-      .a_enable_i(write || enable_i[0]),
-      .a_address_i(a_address),
-      .a_data_i(load_i.data[LOW_W-1:0]),
-      .a_data_o(a_data[LOW_W-1:0]),
-      .b_enable_i(b_enable),
-      .b_address_i(b_address),
-      .b_data_o(b_data[LOW_W-1:0])
-  );
-  gridrt_ram_tdp #(
-      .WIDTH(RECORD_W - LOW_W),
+      .WIDTH(RECORD_W),
       .DEPTH(CELLS),
       .BANK((CELLS > 2048) ? 2048 : CELLS),
       .OUTPUT_REGISTER(1'b1)
-  ) u_high (
+  ) u_records (
       .clk_i,
       .a_write_i(write),
       .a_enable_i(write || enable_i[0]),
       .a_address_i(a_address),
-      .a_data_i(load_i.data[RECORD_W-1:LOW_W]),
-      .a_data_o(a_data[RECORD_W-1:LOW_W]),
+      .a_data_i(load_i.data[RECORD_W-1:0]),
+      .a_data_o(a_data),
       .b_enable_i(b_enable),
       .b_address_i(b_address),
-      .b_data_o(b_data[RECORD_W-1:LOW_W])
+      .b_data_o(b_data)
   );
 
   logic unused_load;

@@ -1,9 +1,9 @@
 // From tasks to references: reads four references a clock, leaves out those that share no half of
 // the voxel with the ray, and gives the rest one a clock, `last` on the last one of its task. The
 // next task follows without a gap. A task in which nothing passes ends with a pulse of `none` and
-// takes no clock from the others. Within a task the order of references is of no account.
+// takes no clock from the others. A task whose ray has been hit before the task's slab is given up.
+// Within a task the order of references is of no account.
 module gridrt_fetch #(
-    parameter int unsigned SLOTS = 48,
     parameter int unsigned REFS = 10240,
     parameter bit MASK = 1'b1,
     parameter bit CANCEL = 1'b1,
@@ -11,7 +11,6 @@ module gridrt_fetch #(
 ) (
     input  logic                          clk_i,
     input  logic                          rst_ni,
-    input  gridrt_pkg::slot_event_t       alloc_i,
     input  gridrt_pkg::interrupt_t        interrupt_i,
     // Loading: reference records (triangle, then mask).
     input  logic                          write_i,
@@ -53,19 +52,18 @@ module gridrt_fetch #(
   logic [gridrt_pkg::REF_W-1:0] at;
   logic [gridrt_pkg::LIST_W-1:0] left;
   logic [5:0] halves;
-  logic [gridrt_pkg::DIST_W-1:0] enter, limit;
+  logic [gridrt_pkg::DIST_W-1:0] enter;
 
-  gridrt_limits #(
-      .SLOTS(SLOTS)
-  ) u_limits (
-      .clk_i,
-      .rst_ni,
-      .alloc_i,
-      .interrupt_i,
-      .slot_i (slot),
-      .limit_o(limit)
-  );
-  assign cancelled = CANCEL && enter > limit;
+  // The sender has compared the task with the ray's limit as it was before the clock in which the
+  // task comes, so only interrupts from then on matter. Limits never rise.
+  gridrt_pkg::interrupt_t interrupt;
+  logic was_cancelled;
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) interrupt <= '0;
+    else interrupt <= interrupt_i;
+  end
+  assign cancelled = CANCEL && (was_cancelled || (interrupt.valid && interrupt.slot == slot &&
+                                                  enter > interrupt.limit));
 
   // Rows in the queue and on their way to it never exceed its size.
   logic [INDEX_W:0] rows;
@@ -86,6 +84,7 @@ module gridrt_fetch #(
     end
   end
   always_ff @(posedge clk_i) begin
+    was_cancelled <= cancelled && !(task_valid_i && task_ready_o);
     if (task_valid_i && task_ready_o) begin
       slot <= task_i.slot;
       at <= task_i.first;
@@ -129,7 +128,7 @@ module gridrt_fetch #(
     gridrt_ram_tdp #(
         .WIDTH(REF_BITS),
         .DEPTH(HALF),
-        .BANK((HALF > 1024) ? 1024 : HALF),
+        .BANK((HALF > 2048) ? 2048 : HALF),
         .OUTPUT_REGISTER(1'b1)
     ) u_references (
         .clk_i,

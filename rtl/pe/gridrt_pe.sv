@@ -120,14 +120,12 @@ module gridrt_pe #(
   );
 
   gridrt_fetch #(
-      .SLOTS (SLOTS),
       .REFS  (REFS),
       .MASK  (MASK),
       .CANCEL(CANCEL)
   ) u_fetch (
       .clk_i,
       .rst_ni,
-      .alloc_i,
       .interrupt_i,
       .write_i(write_reference),
       .write_index_i(load_i.index),
@@ -210,7 +208,7 @@ module gridrt_pe #(
   gridrt_ram_tdp #(
       .WIDTH(54),
       .DEPTH(VERTS),
-      .BANK((VERTS > 1024) ? 1024 : VERTS),
+      .BANK((VERTS > 2048) ? 2048 : VERTS),
       .OUTPUT_REGISTER(1'b1)
   ) u_vertices_01 (
       .clk_i,
@@ -226,7 +224,7 @@ module gridrt_pe #(
   gridrt_ram_tdp #(
       .WIDTH(54),
       .DEPTH(VERTS),
-      .BANK((VERTS > 1024) ? 1024 : VERTS),
+      .BANK((VERTS > 2048) ? 2048 : VERTS),
       .OUTPUT_REGISTER(1'b1)
   ) u_vertices_2 (
       .clk_i,
