@@ -56,15 +56,17 @@ class Firmware {
   // watch.cpp
   bool watch();
   void reset_core();
-  void bring_back(bool image_was_flash);
   [[nodiscard]] bool resident();
+  [[nodiscard]] bool event_busy();
+  void send_event(uint32_t id, const uint32_t* words, uint32_t count);
   // reports.cpp
   bool serve();
-  bool get(uint32_t id, uint32_t& length);
+  uint32_t get(uint32_t id);  // bytes of the body; 0: there is no such report
   bool set(uint32_t id, uint32_t length);
-  void get_self_test();
-  void get_boot();
-  void get_journal();
+  uint32_t get_self_test();
+  uint32_t get_boot();
+  uint32_t get_journal();
+  bool has_window(uint32_t id);
   void body(uint32_t at, uint32_t word);
   // boot.cpp, self_test.cpp
   void boot();
@@ -75,6 +77,7 @@ class Firmware {
   Journal journal_;
   SelfTestResult self_test_;
   BootResult boot_;
+  uint32_t told_state_ = ~0U;  // DeviceState of the last Status that was sent
   wire::BoardCommand command_ = wire::BoardCommand::kNone;
 };
 

@@ -1,10 +1,10 @@
 #include "host/driver/upload.hpp"
 
 #include <algorithm>
-#include <array>
 
 #include <fmt/format.h>
 
+#include "host/driver/image_frames.hpp"
 #include "host/image/image_file.hpp"
 
 namespace gridrt {
@@ -15,38 +15,20 @@ using protocol::FrameType;
 using protocol::SectionKind;
 
 constexpr int kMostAttempts = 64;  ///< commits tried before an upload is given up
-constexpr std::size_t kPiece = std::size_t{1} << 18;  ///< bytes of a section per frame
-
-bool is_for_device(SectionKind kind) {
-  return kind != SectionKind::kIds && kind != SectionKind::kScene;
-}
 
 /// Sends one section, a piece a frame.
 Result<void> send_section(Connection& connection, const protocol::CapabilitiesReport& capabilities,
-                          SectionKind kind, std::uint8_t pe, std::span<const std::byte> bytes) {
-  constexpr std::size_t kHead = protocol::LoadHead::kBytes;
-  const std::size_t room = (capabilities.max_payload - kHead) / 4 * 4;
-  const std::size_t piece = std::min(kPiece, room);
+                          const SectionBytes& section) {
+  const std::size_t piece = piece_bytes(capabilities.max_payload);
   std::size_t offset = 0;
   do {
-    const std::size_t count = std::min(piece, bytes.size() - offset);
-    protocol::LoadHead head;
-    head.kind = static_cast<std::uint8_t>(kind);
-    head.pe = pe;
-    head.offset = static_cast<std::uint32_t>(offset);
-    head.total = static_cast<std::uint32_t>(bytes.size());
-    head.bytes = static_cast<std::uint32_t>(count);
+    const std::size_t count = std::min(piece, section.bytes.size() - offset);
     std::vector<std::byte> frame;
-    FrameBuilder builder(frame, FrameType::kLoadSection, protocol::Layout::kNone,
-                         connection.next_sequence());
-    std::array<std::byte, kHead> head_bytes{};
-    protocol::store(head, head_bytes);
-    builder.append(head_bytes);
-    builder.append(bytes.subspan(offset, count));
-    if (auto built = builder.finish(); !built) return built;
+    auto built = append_piece(frame, section, offset, count, connection.next_sequence());
+    if (!built) return built;
     if (auto sent = connection.send(frame); !sent) return sent;
     offset += count;
-  } while (offset < bytes.size());
+  } while (offset < section.bytes.size());
   return {};
 }
 
@@ -74,13 +56,8 @@ Result<Reply> wait_for(Connection& connection, std::uint32_t sequence) {
 
 /// One attempt to commit.
 Result<Reply> try_commit(Connection& connection, const Image& image) {
-  protocol::CommitHead head;
-  head.pe_mask =
-      image.header.pes >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << image.header.pes) - 1;
-  std::array<std::byte, protocol::CommitHead::kBytes> payload{};
-  protocol::store(head, payload);
   const std::uint32_t sequence = connection.next_sequence();
-  if (auto sent = connection.send(FrameType::kCommit, sequence, payload); !sent) {
+  if (auto sent = connection.send(FrameType::kCommit, sequence, commit_payload(image)); !sent) {
     return std::unexpected(sent.error());
   }
   return wait_for(connection, sequence);
@@ -146,7 +123,7 @@ Result<void> upload(Connection& connection, const Image& image,
   const std::vector<std::byte> header = header_section(image);
   const auto send_kind = [&](SectionKind kind, std::uint8_t pe) -> Result<void> {
     if (kind == SectionKind::kHeader) {
-      return send_section(connection, capabilities, kind, 0, header);
+      return send_section(connection, capabilities, {kind, 0, header});
     }
     const ImageSection* section = image.find(kind, pe);
     if (section == nullptr) {
@@ -155,7 +132,7 @@ Result<void> upload(Connection& connection, const Image& image,
                               "have",
                               protocol::name(kind), pe));
     }
-    return send_section(connection, capabilities, kind, pe, section->bytes);
+    return send_section(connection, capabilities, {kind, pe, section->bytes});
   };
   const auto send_all = [&]() -> Result<void> {
     if (auto sent = send_kind(SectionKind::kHeader, 0); !sent) return sent;
