@@ -11,10 +11,7 @@
 namespace gridrt {
 namespace {
 
-constexpr int kPasses = 6;
 constexpr int kRounds = 4;
-/// A PE may get this much more than an even share by taking a voxel.
-constexpr float kUneven = 1.05F;
 
 using Order = std::array<std::uint8_t, 4>;
 
@@ -32,87 +29,22 @@ void add(Shares& sum, const Shares& part, float sign = 1.0F) {
   for (std::size_t g = 0; g < sum.size(); ++g) sum[g] += sign * part[g];
 }
 
-Shares shares_of(const MeasuredGrid& measured, const VoxelBox& box) {
-  Shares sums{};
+template <class Visit>
+void for_each_voxel(const VoxelGrid& grid, const VoxelBox& box, const Visit& visit) {
   for (int z = box.lo.z; z < box.hi.z; ++z) {
     for (int y = box.lo.y; y < box.hi.y; ++y) {
-      for (int x = box.lo.x; x < box.hi.x; ++x) {
-        const std::size_t i = measured.grid.index({x, y, z});
-        if (measured.lists.first[i + 1] > measured.lists.first[i]) add(sums, measured.shares[i]);
-      }
+      for (int x = box.lo.x; x < box.hi.x; ++x) visit(grid.index({x, y, z}));
     }
   }
-  return sums;
 }
 
-/// How many voxels of each PE refer to each triangle, and what follows.
-class Holdings {
- public:
-  Holdings(const MeasuredGrid& measured, std::size_t triangles, int pes,
-           std::vector<std::uint8_t>& owners)
-      : measured_(measured),
-        owners_(owners),
-        held_(triangles),
-        shares_(static_cast<std::size_t>(pes), Shares{}) {
-    for (std::size_t i = 0; i < owners.size(); ++i) {
-      for (const VoxelReference& r : list(i)) ++held_[r.triangle][owners[i]];
-      add(shares_[owners[i]], measured.shares[i]);
-    }
-  }
-
-  /// Moves the voxel where it spares most copies, if anywhere; true if it has been moved.
-  bool move(std::size_t voxel) {
-    const std::span<const VoxelReference> references = list(voxel);
-    if (references.empty()) return false;
-    const std::uint8_t from = owners_[voxel];
-    int spared = 0;
-    for (const VoxelReference& r : references) spared += held_[r.triangle][from] == 1 ? 1 : 0;
-    if (spared == 0) return false;
-    const Shares& share = measured_.shares[voxel];
-    int least = spared;
-    std::uint8_t best = from;
-    for (std::size_t pe = 0; pe < shares_.size(); ++pe) {
-      const auto to = static_cast<std::uint8_t>(pe);
-      if (to == from) continue;
-      int made = 0;
-      for (const VoxelReference& r : references) made += held_[r.triangle][to] == 0 ? 1 : 0;
-      if (made < least && stays_even(from, to, share)) {
-        least = made;
-        best = to;
-      }
-    }
-    if (best == from) return false;
-    for (const VoxelReference& r : references) {
-      --held_[r.triangle][from];
-      ++held_[r.triangle][best];
-    }
-    add(shares_[from], share, -1.0F);
-    add(shares_[best], share);
-    owners_[voxel] = best;
-    return true;
-  }
-
- private:
-  [[nodiscard]] std::span<const VoxelReference> list(std::size_t voxel) const {
-    const auto& first = measured_.lists.first;
-    return std::span(measured_.lists.references)
-        .subspan(first[voxel], first[voxel + 1] - first[voxel]);
-  }
-
-  [[nodiscard]] bool stays_even(std::uint8_t from, std::uint8_t to, const Shares& share) const {
-    const float even = 1.0F / static_cast<float>(shares_.size());
-    for (std::size_t g = 0; g < share.size(); ++g) {
-      const float after = shares_[to][g] + share[g];
-      if (after > kUneven * even && after > shares_[from][g]) return false;
-    }
-    return true;
-  }
-
-  const MeasuredGrid& measured_;
-  std::vector<std::uint8_t>& owners_;
-  std::vector<std::array<std::uint32_t, 4>> held_;  ///< voxels by triangle and PE
-  std::vector<Shares> shares_;                      ///< by PE
-};
+Shares shares_of(const MeasuredGrid& measured, const VoxelBox& box) {
+  Shares sums{};
+  for_each_voxel(measured.grid, box, [&](std::size_t i) {
+    if (measured.lists.first[i + 1] > measured.lists.first[i]) add(sums, measured.shares[i]);
+  });
+  return sums;
+}
 
 }  // namespace
 
@@ -175,8 +107,15 @@ void find_shares(std::span<const LatticeTriangle> triangles, const Lattice& latt
       const auto& f = facing[measured.lists.references[k].triangle];
       for (std::size_t d = 0; d < kFacings; ++d) share[kRayGroups + d] += f[d];
     }
-    add(total, share);
   }
+  const std::vector<VoxelBox> regions =
+      balanced_boxes(measured.grid, measured.lists, static_cast<int>(kRegions));
+  for (std::size_t r = 0; r < std::min(regions.size(), kRegions); ++r) {
+    for_each_voxel(measured.grid, regions[r], [&](std::size_t i) {
+      measured.shares[i][kRayGroups + kFacings + r] = static_cast<float>(first[i + 1] - first[i]);
+    });
+  }
+  for (const Shares& share : measured.shares) add(total, share);
   for (float& t : total) t = t > 0.0F ? 1.0F / t : 0.0F;
   for (Shares& share : measured.shares) {
     for (std::size_t g = 0; g < share.size(); ++g) share[g] *= total[g];
@@ -230,18 +169,6 @@ std::vector<std::uint8_t> deal_by_work(const MeasuredGrid& measured,
     give_box(measured.grid, boxes[i], dealt[i], owners);
   }
   return owners;
-}
-
-bool spare_copies(const LocalTriangles& local, const Cut& cut, const MeasuredGrid& measured,
-                  std::vector<std::uint8_t>& owners) {
-  Holdings holdings(measured, local.triangles.size(), cut.pes, owners);
-  for (int pass = 0; pass < kPasses; ++pass) {
-    bool moved = false;
-    for (std::size_t i = 0; i < owners.size(); ++i) moved = holdings.move(i) || moved;
-    if (dealing_fits(local, cut, measured, owners)) return true;
-    if (!moved) return false;
-  }
-  return false;
 }
 
 }  // namespace gridrt

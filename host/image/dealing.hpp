@@ -1,5 +1,4 @@
-// Dealings of voxels to PEs that fit small memories: what each PE would hold, and voxels moved to
-// neighbours' owners until it fits.
+// Dealings of voxels to PEs: what is to be even among them, and what each of them would hold.
 #pragma once
 
 #include <cstdint>
@@ -11,11 +10,13 @@
 
 namespace gridrt {
 
-/// What is to be even among the PEs: the work of each group of sample rays and, since rays that
-/// come or go in one direction keep to what faces it, the references to triangles that face each of
-/// 26 directions. Of one voxel, as parts of the grid's totals.
+/// What is to be even among the PEs: the work of each group of sample rays; the references to
+/// triangles that face each of 26 directions, since rays that come or go in one direction keep to
+/// what faces it; and those in each of some regions, since what is near to a camera fills its
+/// picture. Of one voxel, as parts of the grid's totals.
 inline constexpr std::size_t kFacings = 26;
-using Shares = std::array<float, kRayGroups + kFacings>;
+inline constexpr std::size_t kRegions = 200;
+using Shares = std::array<float, kRayGroups + kFacings + kRegions>;
 
 /// One grid over the triangles of a scene, with what its sample rays do.
 struct MeasuredGrid {
@@ -37,11 +38,5 @@ bool dealing_fits(const LocalTriangles& local, const Cut& cut, const MeasuredGri
 /// goes to all PEs, in the order that keeps their shares most even.
 std::vector<std::uint8_t> deal_by_work(const MeasuredGrid& measured,
                                        std::span<const VoxelBox> boxes, int pes);
-
-/// Gives voxels to PEs that hold their triangles anyway, where that spares copies and leaves the
-/// shares about as even as they are; stops when the dealing fits or no voxel is left that helps.
-/// Returns whether it fits.
-bool spare_copies(const LocalTriangles& local, const Cut& cut, const MeasuredGrid& measured,
-                  std::vector<std::uint8_t>& owners);
 
 }  // namespace gridrt

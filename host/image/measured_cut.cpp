@@ -8,6 +8,7 @@
 
 #include "host/image/blocks.hpp"
 #include "host/image/dealing.hpp"
+#include "host/image/even_out.hpp"
 #include "host/image/ray_load.hpp"
 
 namespace gridrt {
@@ -20,8 +21,10 @@ constexpr std::array kBlockShares{1.0, 0.95, 0.9,  0.8,  0.68, 0.55, 0.42,
 /// A grid has no more than this many blocks a triangle, and some: finer ones gain nothing.
 constexpr std::uint64_t kBlocksPerTriangle = 8;
 constexpr std::uint64_t kMoreBlocks = 64;
-/// Many boxes are dealt more evenly, few need fewer copies of triangles.
-constexpr std::array kBoxesPerPe{512, 256, 128, 96, 64, 48, 32, 24, 16, 12, 8, 6, 4, 2, 1};
+/// Many boxes are even as they are dealt.
+constexpr int kManyBoxes = 512;  // a PE
+/// Where copies of triangles do not let them fit: fewer boxes, which are then evened out.
+constexpr std::array kFewBoxes{48, 24};
 constexpr double kEnough = 1.35;  ///< a grid this much dearer than the best: coarser ones are too
 
 /// About cubic voxels in scene units, two by two, as many as `blocks` allows.
@@ -78,7 +81,8 @@ class Search {
 
  private:
   Result<void> deal(const MeasuredGrid& measured);
-  void add(const MeasuredGrid& measured, std::vector<std::uint8_t> owners, Mapping mapping);
+  /// Whether it fits; then it is a candidate.
+  bool add(const MeasuredGrid& measured, std::vector<std::uint8_t> owners, Mapping mapping);
 
   const LatticeScene& scene_;
   RaySample sample_;
@@ -88,15 +92,13 @@ class Search {
   double least_ = 0.0;  ///< of the grid at hand, whether it fits or not
 };
 
-void Search::add(const MeasuredGrid& measured, std::vector<std::uint8_t> owners, Mapping mapping) {
+bool Search::add(const MeasuredGrid& measured, std::vector<std::uint8_t> owners, Mapping mapping) {
   const Cut& cut = scene_.cut;
-  least_ = std::min(least_, estimate_clocks(measured.load, owners, cut.pes));
-  const bool fits =
-      dealing_fits(scene_.local, cut, measured, owners) ||
-      (mapping == Mapping::kMeasured && spare_copies(scene_.local, cut, measured, owners));
-  if (!fits) return;
   const double clocks = estimate_clocks(measured.load, owners, cut.pes);
+  least_ = std::min(least_, clocks);
+  if (!dealing_fits(scene_.local, cut, measured, owners)) return false;
   candidates_.push_back({grids_.size(), std::move(owners), mapping, clocks});
+  return true;
 }
 
 Result<void> Search::deal(const MeasuredGrid& measured) {
@@ -109,11 +111,17 @@ Result<void> Search::deal(const MeasuredGrid& measured) {
     add(measured, std::move(*owners), mapping);
     return {};
   }
-  for (const int boxes : kBoxesPerPe) {
-    if (cut.pes == 1 && boxes > 1) continue;
+  const auto deal_boxes = [&](int boxes) {
     const std::vector<VoxelBox> cuts =
         balanced_boxes(measured.grid, measured.lists, boxes * cut.pes);
-    add(measured, deal_by_work(measured, cuts, cut.pes), Mapping::kMeasured);
+    return deal_by_work(measured, cuts, cut.pes);
+  };
+  if (add(measured, deal_boxes(cut.pes == 1 ? 1 : kManyBoxes), Mapping::kMeasured)) return {};
+  if (cut.pes == 1) return {};
+  for (const int boxes : kFewBoxes) {
+    std::vector<std::uint8_t> owners = deal_boxes(boxes);
+    even_out(scene_.local, cut, measured, owners);
+    add(measured, std::move(owners), Mapping::kMeasured);
   }
   return {};
 }

@@ -8,42 +8,45 @@
 
 #include "host/grid/traversal.hpp"
 #include "host/image/blocks.hpp"
+#include "host/image/uniform.hpp"
 
 namespace gridrt {
 namespace {
 
 /// More triangles are told apart by more rays.
 constexpr std::size_t kFewestRays = 32;  // a view
-constexpr std::size_t kMostRays = 256;
+constexpr std::size_t kMostRays = 400;
 constexpr std::size_t kTrianglesPerRay = 8;
-/// Where rays of a view go: towards the scene, off the axes, no two opposite.
+/// Where rays of a view go: to one of the 26 neighbours of a voxel.
 constexpr std::size_t kViews = kRayGroups / 2;
-constexpr std::array<glm::ivec3, kViews> kDirections{
-    {{9, 3, -2}, {-9, 4, 3}, {2, 9, 4}, {4, -9, 2}, {-3, 2, 9}, {3, 4, -9}}};
-/// Towards the light of a view: sideways, from what faces both.
-constexpr std::array<glm::ivec3, kViews> kLights{
-    {{-3, 8, 5}, {4, 9, -4}, {7, -4, -6}, {-5, 3, -7}, {8, 5, 2}, {-8, 3, 4}}};
+/// Rays of a view, and lights, spread around their direction as a camera close by and lights here
+/// and there would have it: by so much of it per axis.
+constexpr double kSpread = 0.4;
 constexpr double kTraversalUnits = 4.0;  ///< of the board: a block a clock each
 constexpr double kExpanders = 2.0;       ///< a voxel a clock each
 
-/// Bits 11 to 63 of splitmix64 (S. Vigna), in [0, 1): the same on every machine.
-class Uniform {
- public:
-  double operator()() {
-    state_ += 0x9E3779B97F4A7C15U;
-    std::uint64_t z = state_;
-    z = (z ^ (z >> 30U)) * 0xBF58476D1CE4E5B9U;
-    z = (z ^ (z >> 27U)) * 0x94D049BB133111EBU;
-    return static_cast<double>((z ^ (z >> 31U)) >> 11U) * 0x1p-53;
-  }
+glm::dvec3 direction_of(std::size_t view) {
+  const auto cell = static_cast<int>(view < kViews / 2 ? view : view + 1);  // 13 is the middle
+  return glm::normalize(glm::dvec3{cell % 3 - 1, cell / 3 % 3 - 1, cell / 9 - 1});
+}
 
- private:
-  std::uint64_t state_ = 1;
-};
+/// Towards the light of a view: from aside, and from what faces both.
+glm::dvec3 light_of(std::size_t view) {
+  const glm::dvec3 d = direction_of(view);
+  const glm::dvec3 other = view % 2 == 0 ? glm::dvec3{0.36, 0.48, 0.8} : glm::dvec3{-0.8, 0.6, 0.0};
+  return glm::normalize(glm::cross(d, other)) - 0.4 * d;
+}
+
+glm::dvec3 spread(const glm::dvec3& direction, Uniform& uniform) {
+  const double wide = 2.0 * kSpread * glm::length(direction);
+  glm::dvec3 out = direction;
+  for (int a = 0; a < 3; ++a) out[a] += wide * (uniform() - 0.5);
+  return out;
+}
 
 /// Enters the box at a point of the three faces that `direction` meets from outside, evenly over
 /// what a viewer far away sees of them.
-Ray ray_through_box(const Lattice& lattice, const glm::ivec3& direction, Uniform& uniform) {
+Ray ray_through_box(const Lattice& lattice, const glm::dvec3& direction, Uniform& uniform) {
   glm::dvec3 lo{0.0};
   glm::dvec3 extent{0.0};
   for (int a = 0; a < 3; ++a) {
@@ -63,7 +66,7 @@ Ray ray_through_box(const Lattice& lattice, const glm::ivec3& direction, Uniform
   Ray ray;
   for (int a = 0; a < 3; ++a) {
     const double part = a == face ? (direction[a] > 0 ? 0.0 : 1.0) : uniform();
-    ray.direction[a] = static_cast<double>(direction[a]) * length;
+    ray.direction[a] = direction[a] * length;
     ray.origin[a] = lo[a] + part * extent[a] - ray.direction[a];
   }
   return ray;
@@ -152,10 +155,9 @@ class Walk {
 RaySample::RaySample(const Lattice& lattice, std::span<const LatticeTriangle> triangles)
     : lattice_(lattice), triangles_(triangles) {
   const std::size_t rays = std::clamp(triangles.size() / kTrianglesPerRay, kFewestRays, kMostRays);
-  Uniform uniform;
   for (std::size_t view = 0; view < kViews; ++view) {
     for (std::size_t i = 0; i < rays; ++i) {
-      const Ray ray = ray_through_box(lattice, kDirections[view], uniform);
+      const Ray ray = ray_through_box(lattice, spread(direction_of(view), uniform_), uniform_);
       // A box of nearly all of float32's range has rays that are no numbers.
       if (!validate(ray)) continue;
       const Segment segment = make_segment(lattice, ray);
@@ -168,15 +170,14 @@ RaySample::RaySample(const Lattice& lattice, std::span<const LatticeTriangle> tr
 
 void RaySample::add_shadow_ray(const Sample& primary) {
   const LatticeTriangle& left = triangles_[primary.hit.id];
+  const glm::dvec3 light = spread(light_of(primary.group), uniform_);
   Ray ray;
   for (int a = 0; a < 3; ++a) {
-    ray.direction[a] = std::ldexp(static_cast<double>(kLights[primary.group][a]),
-                                  std::max(-1000, -lattice_.scale[a]));
+    ray.direction[a] = std::ldexp(light[a], std::max(-1000, -lattice_.scale[a]));
   }
   const glm::dvec3 e1{left.v[1] - left.v[0]};
   const glm::dvec3 e2{left.v[2] - left.v[0]};
   const glm::dvec3 normal = glm::cross(e1, e2);
-  const glm::dvec3 light{kLights[primary.group]};
   const glm::dvec3 incoming{primary.segment.p1 - primary.segment.p0};
   // In shadow by itself: no ray.
   if (glm::dot(normal, light) * glm::dot(normal, incoming) >= 0.0) return;

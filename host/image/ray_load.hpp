@@ -11,12 +11,13 @@
 #include "host/grid/lattice.hpp"
 #include "host/grid/segment.hpp"
 #include "host/grid/voxel_grid.hpp"
+#include "host/image/uniform.hpp"
 
 namespace gridrt {
 
-/// Groups of sample rays, each of which is to keep all PEs busy: primary rays from six directions,
+/// Groups of sample rays, each of which is to keep all PEs busy: primary rays from 26 directions,
 /// then shadow rays from what each of these hits.
-inline constexpr std::size_t kRayGroups = 12;
+inline constexpr std::size_t kRayGroups = 52;
 
 /// What the sample rays do on one grid; numbers are means of a ray. Work is the clocks that a PE
 /// spends with a voxel's list: it reads two references and tests one a clock.
@@ -50,6 +51,7 @@ class RaySample {
   Lattice lattice_;
   std::span<const LatticeTriangle> triangles_;
   std::vector<Sample> samples_;
+  Uniform uniform_;
   std::array<double, kRayGroups> rays_{};  ///< number by group
   bool hits_known_ = false;
 };

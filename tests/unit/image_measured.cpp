@@ -3,7 +3,9 @@
 
 #include "host/grid/partition.hpp"
 #include "host/image/blocks.hpp"
+#include "host/image/even_out.hpp"
 #include "host/image/image_file.hpp"
+#include "host/image/lattice_scene.hpp"
 #include "host/image/ray_load.hpp"
 #include "host/scene/load.hpp"
 #include "image_support.hpp"
@@ -81,6 +83,42 @@ TEST(Measured, ThirteenThousandTrianglesFit) {
     const Image image = must_build(scene, compact());
     EXPECT_GT(block_total(image.grid()), 3000U) << spec;
     EXPECT_TRUE(verify_image(image)) << verify_image(image).error().message;
+  }
+}
+
+/// Of the groups of rays, facings and regions: how much more than its part the busiest PE has.
+double unevenness(const MeasuredGrid& measured, std::span<const std::uint8_t> owners, int pes) {
+  std::vector<Shares> held(static_cast<std::size_t>(pes), Shares{});
+  for (std::size_t i = 0; i < owners.size(); ++i) {
+    for (std::size_t g = 0; g < held[0].size(); ++g) held[owners[i]][g] += measured.shares[i][g];
+  }
+  double sum = 0.0;
+  for (std::size_t g = 0; g < held[0].size(); ++g) {
+    double most = 0.0;
+    for (const Shares& h : held) most = std::max(most, static_cast<double>(h[g]));
+    sum += most * pes - 1.0;
+  }
+  return sum / static_cast<double>(held[0].size());
+}
+
+TEST(Measured, EvensOutWithinMemories) {
+  const Scene scene = must_load("builtin:teapot?tessellation=14");
+  const auto lattice_scene = make_lattice_scene(scene, compact());
+  ASSERT_TRUE(lattice_scene);
+  const auto& [local, cut] = *lattice_scene;
+  MeasuredGrid measured{must_build(scene, compact()).grid(), {}, {}, {}};
+  measured.lists = bin_triangles(measured.grid, local.triangles);
+  measured.load = RaySample(cut.lattice, local.triangles).measure(measured.grid, measured.lists);
+  find_shares(local.triangles, cut.lattice, measured);
+  for (const int boxes : {48, 12}) {  // a PE: copies fill the memories, and large boxes
+    const auto cuts = balanced_boxes(measured.grid, measured.lists, boxes * cut.pes);
+    std::vector<std::uint8_t> owners = deal_by_work(measured, cuts, cut.pes);
+    EXPECT_EQ(dealing_fits(local, cut, measured, owners), boxes == 12);
+    const double before = unevenness(measured, owners, cut.pes);
+    even_out(local, cut, measured, owners);
+    EXPECT_TRUE(dealing_fits(local, cut, measured, owners)) << boxes;
+    const double allowed = boxes == 12 ? 0.7 * before : 2.0 * before;
+    EXPECT_LT(unevenness(measured, owners, cut.pes), allowed) << boxes;
   }
 }
 
