@@ -44,5 +44,6 @@ write_basic_package_version_file(
   ${PROJECT_BINARY_DIR}/GridRTConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/GridRTConfig.cmake
               ${PROJECT_BINARY_DIR}/GridRTConfigVersion.cmake cmake/FindGMP.cmake cmake/FindHighway.cmake
+              cmake/FindHIDAPI.cmake cmake/FindLibUSB.cmake
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/GridRT)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "hal/usb/usb.hpp"
 #include "host/app/exit_code.hpp"
 #include "host/app/host_run.hpp"
 #include "host/app/options.hpp"
@@ -25,6 +26,20 @@ int print(const std::string& text) {
   return kExitOk;
 }
 
+/// A line for each board on USB, that it can be used or why not.
+std::string board_list() {
+  if (!usb_is_built_in()) return {};
+  const auto boards = list_usb_boards();
+  if (!boards) return fmt::format("      {}\n", boards.error().message);
+  if (boards->empty()) return "      no board is plugged in\n";
+  std::string text;
+  for (const UsbBoard& board : *boards) {
+    text += fmt::format("      usb:{} at {}: {}\n", board.serial, board.port,
+                        board.trouble.empty() ? "ready" : board.trouble);
+  }
+  return text;
+}
+
 std::string device_list() {
   constexpr std::pair<std::string_view, std::string_view> kKnown[] = {
       {"seq", "software, one thread: the reference"},
@@ -36,9 +51,9 @@ std::string device_list() {
   std::string text;
   for (const auto& [name, summary] : kKnown) {
     const bool there = std::ranges::count(built_in, name) > 0;
-    text += fmt::format("{:<5} {}{}\n", name, summary, there ? "" : " (not built in yet)");
+    text += fmt::format("{:<5} {}{}\n", name, summary, there ? "" : " (not built in)");
   }
-  return text;
+  return text + board_list();
 }
 
 }  // namespace

@@ -98,6 +98,14 @@ Result<void> HostRun::open() {
   }
   DeviceOptions device;
   device.name = options_.device;
+  if (device.name == "auto") {
+    const AutoChoice choice = choose_device();
+    device.name = choice.name;
+    if (options_.progress != ProgressMode::kOff) {
+      progress_.clear();
+      std::fputs(fmt::format("Device {}: {}.\n", choice.name, choice.reason).c_str(), stderr);
+    }
+  }
   device.schedule = options_.schedule;
   device.threads = options_.threads;
   device.rays_per_frame = options_.batch;

@@ -22,13 +22,13 @@ Result<void> Connection::send(protocol::FrameType type, std::uint32_t sequence,
   return send(bytes);
 }
 
-Result<std::optional<Frame>> Connection::receive() {
+Result<std::optional<Frame>> Connection::receive(std::chrono::milliseconds timeout) {
   constexpr std::size_t kRead = std::size_t{1} << 18;
   for (;;) {
     while (const std::optional<FrameEvent> event = reader_.next()) {
       if (const auto* frame = std::get_if<Frame>(&*event)) return *frame;
     }
-    const Result<std::size_t> got = transport_->receive(reader_.space(kRead), timeout_);
+    const Result<std::size_t> got = transport_->receive(reader_.space(kRead), timeout);
     if (!got) return std::unexpected(got.error());
     reader_.filled(*got);
     bytes_in_ += *got;

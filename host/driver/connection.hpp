@@ -37,7 +37,10 @@ class Connection {
   /// The next good frame, or nothing when the device has been silent for the time limit. Faulty
   /// frames are skipped: what they carried comes again when it is asked for again. The payload is
   /// valid until the next call.
-  Result<std::optional<Frame>> receive();
+  Result<std::optional<Frame>> receive() { return receive(timeout_); }
+
+  /// The same with another time limit.
+  Result<std::optional<Frame>> receive(std::chrono::milliseconds timeout);
 
   [[nodiscard]] std::uint64_t bytes_out() const { return bytes_out_; }
   [[nodiscard]] std::uint64_t bytes_in() const { return bytes_in_; }

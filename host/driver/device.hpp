@@ -32,7 +32,7 @@ enum class Query { kClosestHit, kAnyHit };
 
 /// How to open a device and talk to it.
 struct DeviceOptions {
-  std::string name = "auto";  ///< auto, seq, omp, mpi, sim; usb[:SERIAL] when built in
+  std::string name = "auto";  ///< auto, seq, omp, mpi, sim or usb[:SERIAL]
   std::string schedule = {};  ///< of software PEs: rays, pes or paper; empty: the
                               ///< device's own (omp: rays, mpi: pes)
   /// Of omp's schedule rays: plain (as seq), or a kind of vectors (host/pe/ray_stream.hpp) such as
@@ -98,6 +98,14 @@ class Device {
   /// The name that was opened, with `auto` resolved.
   [[nodiscard]] virtual std::string name() const = 0;
 };
+
+/// What `auto` means here and now: usb if a board can be used, else mpi in a job of several ranks,
+/// else omp; and why, as a clause that may follow "DEVICE: ".
+struct AutoChoice {
+  std::string name;
+  std::string reason;
+};
+AutoChoice choose_device();
 
 /// Opens a device by name. Errors: kUsage for an unknown name, kUnsupported for one that this
 /// build does not have (the advice lists those it has).

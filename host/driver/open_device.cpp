@@ -6,9 +6,11 @@
 #include <fmt/ranges.h>
 
 #include "hal/loopback.hpp"
+#include "hal/usb/usb.hpp"
 #include "host/driver/device.hpp"
 #include "host/driver/session.hpp"
 #include "host/driver/sim_device.hpp"
+#include "host/driver/usb_device.hpp"
 #include "host/mpi/connect.hpp"
 #include "host/pe/ray_stream.hpp"
 #include "host/pe/software_device.hpp"
@@ -49,7 +51,7 @@ Result<std::unique_ptr<Device>> open_ranks(const DeviceOptions& options,
 
 /// Devices that the plan names and this build does not have yet.
 bool is_planned(const std::string& name) {
-  return (name == "mpi" && !mpi_is_built_in()) || name == "usb" || name.starts_with("usb:");
+  return (name == "mpi" && !mpi_is_built_in()) || (is_usb(name) && !usb_is_built_in());
 }
 
 /// The schedule of a software device. Threads are for `omp` to choose.
@@ -103,12 +105,29 @@ std::vector<std::string> built_in_devices() {
   std::vector<std::string> names{"seq", "omp"};
   if (mpi_is_built_in()) names.emplace_back("mpi");
   if (has_sim()) names.emplace_back("sim");
+  if (usb_is_built_in()) names.emplace_back("usb");
   return names;
+}
+
+AutoChoice choose_device() {
+  std::string without = "no GridRT board is plugged in";
+  if (!usb_is_built_in()) {
+    without = "this build has no device 'usb'";
+  } else if (const auto boards = list_usb_boards(); !boards) {
+    without = boards.error().message;
+  } else {
+    for (const UsbBoard& board : *boards) {
+      if (board.trouble.empty()) return {"usb", "a GridRT board is plugged in"};
+      without = board.trouble;
+    }
+  }
+  if (ranks_of_this_job() > 1) return {"mpi", without + ", and this is a job of several ranks"};
+  return {"omp", without};
 }
 
 Result<std::unique_ptr<Device>> open_device(const DeviceOptions& options) {
   DeviceOptions chosen = options;
-  if (chosen.name == "auto") chosen.name = ranks_of_this_job() > 1 ? "mpi" : "omp";
+  if (chosen.name == "auto") chosen.name = choose_device().name;
   if (!chosen.waves.empty() && !is_sim(chosen.name)) {
     return fail(ErrorKind::kUsage, fmt::format("device '{}' has no waves to trace", chosen.name),
                 "use --device sim, or leave --trace out");
@@ -120,7 +139,7 @@ Result<std::unique_ptr<Device>> open_device(const DeviceOptions& options) {
                 fmt::format("use one of: auto, {}", available));
   }
   if (std::ranges::count(built_in_devices(), chosen.name) == 0 && !is_sim(chosen.name) &&
-      chosen.name != kBoardInSoftware) {
+      !is_usb(chosen.name) && chosen.name != kBoardInSoftware) {
     return fail(ErrorKind::kUsage, fmt::format("device '{}' is not known", chosen.name),
                 fmt::format("use one of: auto, {}", available));
   }
@@ -128,13 +147,13 @@ Result<std::unique_ptr<Device>> open_device(const DeviceOptions& options) {
     return fail(ErrorKind::kUsage, fmt::format("{} threads asked for", chosen.threads),
                 "use 0 for all cores, or a positive number");
   }
-  if (is_sim(chosen.name)) {
+  if (is_sim(chosen.name) || is_usb(chosen.name)) {
     if (!chosen.schedule.empty()) {
       return fail(ErrorKind::kUsage,
                   fmt::format("device '{}' has no schedule '{}'", chosen.name, chosen.schedule),
                   "schedules are for seq, omp and mpi; leave --schedule out");
     }
-    return open_sim(chosen);
+    return is_sim(chosen.name) ? open_sim(chosen) : open_usb_device(chosen);
   }
   const Result<ScheduleOptions> schedule = choose_schedule(chosen);
   if (!schedule) return std::unexpected(schedule.error());

@@ -29,12 +29,19 @@ class Usage(ProgramTest):
         self.assertEqual(self.entries(), [])
 
     def test_what_is_not_built_in_is_5(self):
-        for words in (["--device", "usb"], ["--device", "usb:0001"], ["--exact"]):
-            with self.subTest(words=words):
-                done = self.host("builtin:teapot", "-o", "a.png", *words, code=5)
-                self.assertIn("not built in yet", done.stderr)
+        done = self.host("builtin:teapot", "-o", "a.png", "--exact", code=5)
+        self.assertIn("not built in yet", done.stderr)
         self.image("--firmware", "f.bin", code=5)
         self.assertEqual(self.entries(), [])
+
+    def test_a_board_that_is_not_there_is_6_and_auto_says_so(self):
+        done = self.host("builtin:cube", "-o", "a.png", "--device", "usb:none", code=6)
+        self.assertIn("no GridRT board with serial 'none' is plugged in", done.stderr)
+        self.assertIn("gridrt-board list", done.stderr)
+        self.host("builtin:cube", "-o", "a.png", "--device", "usb:none", "--schedule", "pes", code=2)
+        self.assertEqual(self.entries(), [])
+        done = self.run_program("gridrt-host", "builtin:cube", *SMALL, "-o", "a.png")
+        self.assertRegex(done.stderr, r"\ADevice (omp|usb): .*board.*plugged in\.\n\Z")
 
     def test_waves_are_those_of_a_simulation(self):
         done = self.host("builtin:cube", "--device", "seq", "--trace", "w.fst", code=2)
@@ -48,7 +55,7 @@ class Usage(ProgramTest):
         self.assertRegex(self.image("--version").stdout, r"^gridrt-image \d+\.\d+\.\d+ ")
         devices = self.host("--list-devices").stdout
         self.assertRegex(devices, r"(?m)^seq ")
-        self.assertRegex(devices, r"(?m)^usb .*not built in yet")
+        self.assertRegex(devices, r"(?m)^usb ")
 
 
 class Input(ProgramTest):

@@ -1,0 +1,281 @@
+#include "hal/usb/bulk_link.hpp"
+
+#include <algorithm>
+#include <thread>
+#include <utility>
+
+#include "gridrt_usb.hpp"
+#include "hal/usb/find.hpp"
+#include "hal/usb/messages.hpp"
+
+namespace gridrt {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr int kMostFailures = 8;  ///< in a row, of one pipe
+constexpr milliseconds kSlice(100);
+constexpr milliseconds kFarewell(2000);   ///< for transfers to come back when a link is closed
+constexpr milliseconds kUnplugging(300);  ///< until the kernel has noticed
+
+std::string status_text(libusb_transfer_status status) {
+  switch (status) {
+    case LIBUSB_TRANSFER_STALL:
+      return "the board refuses transfers (stall)";
+    case LIBUSB_TRANSFER_OVERFLOW:
+      return "the board sent more than a transfer holds";
+    case LIBUSB_TRANSFER_TIMED_OUT:
+      return "time-out";
+    default:
+      return "errors on the wire";
+  }
+}
+
+}  // namespace
+
+UsbMemory::UsbMemory(libusb_device_handle* handle, std::size_t bytes) : handle_(handle) {
+  if (unsigned char* shared = libusb_dev_mem_alloc(handle, bytes)) {
+    bytes_ = std::as_writable_bytes(std::span(shared, bytes));
+  } else {
+    own_.resize(bytes);
+    bytes_ = own_;
+  }
+}
+
+UsbMemory::~UsbMemory() {
+  if (own_.empty() && !bytes_.empty()) {
+    libusb_dev_mem_free(handle_, reinterpret_cast<unsigned char*>(bytes_.data()), bytes_.size());
+  }
+}
+
+BulkLink::BulkLink(libusb_context* context, libusb_device_handle* handle, std::string port,
+                   const UsbOptions& options)
+    : context_(context), handle_(handle), port_(std::move(port)), options_(options) {}
+
+Result<std::unique_ptr<BulkLink>> BulkLink::open(libusb_context* context,
+                                                 libusb_device_handle* handle, std::string port,
+                                                 const UsbOptions& options) {
+  if (options.transfers < 1 || options.transfer_bytes == 0 ||
+      options.transfer_bytes % usb::kBulkPacketHigh != 0) {
+    return fail(ErrorKind::kUsage,
+                "USB transfers must be whole packets of 512 bytes, at least one");
+  }
+  std::unique_ptr<BulkLink> link(new BulkLink(context, handle, std::move(port), options));
+  if (auto started = link->start(); !started) return std::unexpected(started.error());
+  return link;
+}
+
+Result<void> BulkLink::start() {
+  switch (const int code = libusb_claim_interface(handle_, usb::kBulkInterface)) {
+    case LIBUSB_SUCCESS:
+      claimed_ = true;
+      break;
+    case LIBUSB_ERROR_BUSY:
+      return std::unexpected(usb_error::in_use(port_));
+    case LIBUSB_ERROR_NO_DEVICE:
+      return std::unexpected(gone());
+    default:
+      return std::unexpected(usb_error::failing("to the board", libusb_strerror(code), 1));
+  }
+  // What a program before this one left half-done ends here.
+  libusb_clear_halt(handle_, usb::kBulkOut);
+  libusb_clear_halt(handle_, usb::kBulkIn);
+  if (auto added = add_pieces(out_, usb::kBulkOut); !added) return added;
+  if (auto added = add_pieces(in_, usb::kBulkIn); !added) return added;
+  for (Piece& piece : in_) {
+    if (auto submitted = submit(piece); !submitted) return submitted;
+  }
+  return {};
+}
+
+Result<void> BulkLink::add_pieces(std::deque<Piece>& pieces, std::uint8_t endpoint) {
+  for (std::size_t i = 0; i < options_.transfers; ++i) {
+    Piece& piece = pieces.emplace_back(handle_, options_.transfer_bytes);
+    piece.transfer.reset(libusb_alloc_transfer(0));
+    if (!piece.transfer) return fail(ErrorKind::kTransport, "no memory for USB transfers");
+    const std::span<std::byte> bytes = piece.memory.bytes();
+    libusb_fill_bulk_transfer(piece.transfer.get(), handle_, endpoint,
+                              reinterpret_cast<unsigned char*>(bytes.data()),
+                              static_cast<int>(bytes.size()), &BulkLink::finished, &piece, 0);
+  }
+  return {};
+}
+
+BulkLink::~BulkLink() {
+  const auto in_flight = [&] {
+    const auto flies = [](const Piece& piece) { return piece.state == State::kInFlight; };
+    return std::ranges::any_of(out_, flies) || std::ranges::any_of(in_, flies);
+  };
+  for (std::deque<Piece>* pieces : {&out_, &in_}) {
+    for (Piece& piece : *pieces) {
+      if (piece.state == State::kInFlight) libusb_cancel_transfer(piece.transfer.get());
+    }
+  }
+  const auto end = Clock::now() + kFarewell;
+  while (in_flight() && Clock::now() < end) {
+    timeval time{0, 100000};
+    libusb_handle_events_timeout_completed(context_, &time, nullptr);
+  }
+  // The kernel may still write to a transfer that never came back: better lost than used again.
+  for (std::deque<Piece>* pieces : {&out_, &in_}) {
+    for (Piece& piece : *pieces) {
+      if (piece.state == State::kInFlight) static_cast<void>(piece.transfer.release());
+    }
+  }
+  if (claimed_) libusb_release_interface(handle_, usb::kBulkInterface);
+}
+
+void LIBUSB_CALL BulkLink::finished(libusb_transfer* transfer) noexcept {
+  static_cast<Piece*>(transfer->user_data)->state = State::kDone;
+}
+
+Error BulkLink::gone() const {
+  const auto end = Clock::now() + kUnplugging;
+  while (is_plugged_in(port_)) {
+    if (Clock::now() >= end) return usb_error::interrupted();
+    std::this_thread::sleep_for(milliseconds(10));
+  }
+  return usb_error::unplugged();
+}
+
+Result<void> BulkLink::submit(Piece& piece) {
+  const int code = libusb_submit_transfer(piece.transfer.get());
+  if (code == LIBUSB_SUCCESS) {  // it cannot finish before events are handled
+    piece.taken = 0;
+    piece.state = State::kInFlight;
+    return {};
+  }
+  if (code == LIBUSB_ERROR_NO_DEVICE) return std::unexpected(gone());
+  return std::unexpected(usb_error::failing("to the board", libusb_strerror(code), 1));
+}
+
+Result<void> BulkLink::settle(Piece& piece, int& failures) {
+  const libusb_transfer& transfer = *piece.transfer;
+  if (transfer.status == LIBUSB_TRANSFER_COMPLETED) {
+    failures = 0;
+    return {};
+  }
+  if (transfer.status == LIBUSB_TRANSFER_NO_DEVICE) return std::unexpected(gone());
+  if (transfer.status == LIBUSB_TRANSFER_CANCELLED)
+    return std::unexpected(usb_error::interrupted());
+  if (++failures >= kMostFailures) {
+    const bool in = (transfer.endpoint & LIBUSB_ENDPOINT_IN) != 0;
+    return std::unexpected(usb_error::failing(in ? "from the board" : "to the board",
+                                              status_text(transfer.status), failures));
+  }
+  // The bytes of that transfer are lost; the frames that they belonged to are sent again.
+  if (transfer.status == LIBUSB_TRANSFER_STALL &&
+      libusb_clear_halt(handle_, transfer.endpoint) == LIBUSB_ERROR_NO_DEVICE) {
+    return std::unexpected(gone());
+  }
+  return {};
+}
+
+Result<void> BulkLink::wait_for_events(milliseconds longest) {
+  timeval time{longest.count() / 1000, static_cast<suseconds_t>(longest.count() % 1000 * 1000)};
+  const int code = libusb_handle_events_timeout_completed(context_, &time, nullptr);
+  if (code == LIBUSB_SUCCESS || code == LIBUSB_ERROR_INTERRUPTED) return {};
+  if (code == LIBUSB_ERROR_NO_DEVICE) return std::unexpected(gone());
+  return std::unexpected(usb_error::failing("to the board", libusb_strerror(code), 1));
+}
+
+bool BulkLink::nothing_coming() const {
+  return std::ranges::none_of(in_,
+                              [](const Piece& piece) { return piece.state == State::kInFlight; });
+}
+
+/// A board that cannot get rid of its answers takes no more questions: makes room for them.
+Result<void> BulkLink::put_by() {
+  Piece& piece = in_[next_in_];
+  const std::span<std::byte> came =
+      piece.memory.bytes().first(static_cast<std::size_t>(piece.transfer->actual_length));
+  const std::span<std::byte> left = came.subspan(piece.taken);
+  if (early_.size() + left.size() > options_.most_early_bytes) {
+    return std::unexpected(usb_error::endless(early_.size()));
+  }
+  early_.insert(early_.end(), left.begin(), left.end());
+  next_in_ = (next_in_ + 1) % in_.size();
+  if (auto settled = settle(piece, in_failures_); !settled) return settled;
+  return submit(piece);
+}
+
+Result<void> BulkLink::wait_for_room(Piece& piece) {
+  const auto end = Clock::now() + options_.patience;
+  while (piece.state == State::kInFlight) {
+    if (nothing_coming()) {
+      if (auto put = put_by(); !put) return put;
+    }
+    if (Clock::now() >= end) {
+      return std::unexpected(usb_error::takes_no_bytes(
+          static_cast<std::size_t>(piece.transfer->length), options_.patience));
+    }
+    if (auto waited = wait_for_events(kSlice); !waited) return waited;
+  }
+  if (piece.state == State::kIdle) return {};
+  piece.state = State::kIdle;
+  return settle(piece, out_failures_);
+}
+
+Result<void> BulkLink::send(std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    Piece& piece = out_[next_out_];
+    if (auto room = wait_for_room(piece); !room) return room;
+    const std::size_t size = std::min(bytes.size(), piece.memory.bytes().size());
+    std::ranges::copy(bytes.first(size), piece.memory.bytes().begin());
+    piece.transfer->length = static_cast<int>(size);
+    if (auto submitted = submit(piece); !submitted) return submitted;
+    next_out_ = (next_out_ + 1) % out_.size();
+    bytes = bytes.subspan(size);
+  }
+  return {};
+}
+
+Result<void> BulkLink::flush() {
+  for (Piece& piece : out_) {
+    if (auto done = wait_for_room(piece); !done) return done;
+  }
+  return {};
+}
+
+Result<std::size_t> BulkLink::receive(std::span<std::byte> out, milliseconds timeout) {
+  if (out.empty()) return 0;
+  if (early_taken_ < early_.size()) {
+    const std::size_t size = std::min(out.size(), early_.size() - early_taken_);
+    std::copy_n(early_.begin() + static_cast<std::ptrdiff_t>(early_taken_), size, out.begin());
+    early_taken_ += size;
+    return size;
+  }
+  early_.clear();
+  early_taken_ = 0;
+  const auto end = Clock::now() + timeout;
+  std::size_t given = 0;
+  for (;;) {
+    Piece& piece = in_[next_in_];
+    if (piece.state == State::kInFlight) {
+      // What there is is worth more than what may come.
+      const auto left = std::chrono::ceil<milliseconds>(end - Clock::now());
+      if (given > 0 || left <= milliseconds(0)) return given;
+      if (auto waited = wait_for_events(std::min(left, kSlice)); !waited) {
+        return std::unexpected(waited.error());
+      }
+      continue;
+    }
+    const auto came = static_cast<std::size_t>(piece.transfer->actual_length);
+    const std::size_t size = std::min(out.size() - given, came - piece.taken);
+    std::ranges::copy(piece.memory.bytes().subspan(piece.taken, size),
+                      out.begin() + static_cast<std::ptrdiff_t>(given));
+    piece.taken += size;
+    given += size;
+    if (piece.taken == came) {
+      const Result<void> settled = settle(piece, in_failures_);
+      const Result<void> again = settled ? submit(piece) : settled;
+      if (again) next_in_ = (next_in_ + 1) % in_.size();
+      // The bytes before a failure count; the next call finds the failure again.
+      if (!again && given == 0) return std::unexpected(again.error());
+      if (!again) return given;
+    }
+    if (given == out.size()) return given;
+  }
+}
+
+}  // namespace gridrt
