@@ -55,7 +55,7 @@ module gridrt_pe #(
   localparam int unsigned TRI_INDEX_W = $clog2(TRIS);
   localparam int unsigned VERT_INDEX_W = $clog2(VERTS);
   // Tests on their way and events that wait: the way takes 12 clocks.
-  localparam int unsigned ROOM = 32;
+  localparam int unsigned ROOM = 16;
   localparam int unsigned ROOM_W = $clog2(ROOM + 1);
   // Section kinds of the protocol.
   localparam logic [7:0] REFERENCES = 8'd3;

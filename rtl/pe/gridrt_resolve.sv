@@ -8,7 +8,7 @@ module gridrt_resolve #(
     parameter int unsigned TRIS = 4096,
     parameter int unsigned SLOTS = 48,
     parameter int unsigned DIVIDERS = 3,
-    parameter int unsigned DEPTH = 32,  // tests that may wait here
+    parameter int unsigned DEPTH = 16,  // tests that may wait here
     parameter int unsigned ORDER = 16,  // events behind the one that leaves next: a division's time
     localparam int unsigned MAG_W = 3 * B + 2,
     localparam int unsigned COUNT_W = $clog2(DEPTH + 1)

@@ -17,7 +17,7 @@ namespace {
 constexpr int kBits = GRIDRT_RTL_B;
 constexpr int kTriangles = GRIDRT_RTL_TRIS;
 constexpr int kSlots = GRIDRT_RTL_SLOTS;
-constexpr int kRoom = 32;
+constexpr int kRoom = 16;
 constexpr std::uint64_t kMostDet = (std::uint64_t{1} << (3 * kBits + 2)) - 1;
 
 struct Ray {
