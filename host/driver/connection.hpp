@@ -42,6 +42,9 @@ class Connection {
   /// The same with another time limit.
   Result<std::optional<Frame>> receive(std::chrono::milliseconds timeout);
 
+  /// Counts bytes from here on.
+  void forget_counts() { bytes_out_ = bytes_in_ = 0; }
+
   [[nodiscard]] std::uint64_t bytes_out() const { return bytes_out_; }
   [[nodiscard]] std::uint64_t bytes_in() const { return bytes_in_; }
 

@@ -227,17 +227,28 @@ Result<std::vector<ExplainEvent>> Session::explain(const Image& image, const Seg
   return read_ray_log(image, segment, words, lost);
 }
 
+Result<void> Session::start_counting() {
+  const auto report = get_report<protocol::CountersReport>(connection_.transport());
+  if (!report) return std::unexpected(report.error());
+  before_ = *report;
+  connection_.forget_counts();
+  return {};
+}
+
 Result<DeviceCounters> Session::counters() {
   const auto report = get_report<protocol::CountersReport>(connection_.transport());
   if (!report) return std::unexpected(report.error());
+  // A device that was reset meanwhile counts from nothing.
+  const bool anew = report->rays < before_.rays || report->cycles < before_.cycles;
+  const protocol::CountersReport before = anew ? protocol::CountersReport{} : before_;
   DeviceCounters c;
-  c.rays = report->rays;
-  c.steps = report->steps;
-  c.tests = report->tests;
-  c.masked = report->masked;
-  c.interrupts = report->interrupts;
-  c.feedback_waits = report->feedback_waits;
-  c.cycles = report->cycles;
+  c.rays = report->rays - before.rays;
+  c.steps = report->steps - before.steps;
+  c.tests = report->tests - before.tests;
+  c.masked = report->masked - before.masked;
+  c.interrupts = report->interrupts - before.interrupts;
+  c.feedback_waits = report->feedback_waits - before.feedback_waits;
+  c.cycles = report->cycles - before.cycles;
   c.bytes_out = connection_.bytes_out();
   c.bytes_in = connection_.bytes_in();
   c.frames_retried = retries_;

@@ -35,6 +35,9 @@ class Session final : public Device {
     return capabilities_;
   }
 
+  /// Counts from here on; what the device did for others before is not told. Errors: the link's.
+  Result<void> start_counting();
+
   /// The connection; for tests.
   [[nodiscard]] Connection& connection() { return connection_; }
 
@@ -73,7 +76,8 @@ class Session final : public Device {
   std::string name_;
   protocol::CapabilitiesReport capabilities_{};
   protocol::Layout layout_ = protocol::Layout::kNone;
-  std::optional<Answers> answers_;  ///< of the loaded image
+  std::optional<Answers> answers_;     ///< of the loaded image
+  protocol::CountersReport before_{};  ///< what the device had counted when it was opened
   std::uint64_t retries_ = 0;
   std::uint64_t uploads_ = 0;
   double upload_seconds_ = 0.0;

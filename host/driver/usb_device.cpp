@@ -63,6 +63,9 @@ Result<std::unique_ptr<Device>> open_usb_device(const DeviceOptions& options) {
     }
   }
   if (auto done = synchronise(connection); !done) return std::unexpected(std::move(done.error()));
+  if (auto counts = (*session)->start_counting(); !counts) {
+    return std::unexpected(std::move(counts.error()));
+  }
   return std::unique_ptr<Device>(std::move(*session));
 }
 

@@ -39,6 +39,7 @@ SoftwareDevice::SoftwareDevice(SoftwareDeviceOptions options, std::unique_ptr<Cr
 
 Result<void> SoftwareDevice::consume(std::span<const std::byte> bytes) {
   reader_.push(bytes);
+  if (options_.frame_patience.count() > 0) last_byte_ = std::chrono::steady_clock::now();
   return handle_frames();
 }
 
@@ -176,7 +177,12 @@ Result<std::size_t> SoftwareDevice::produce(std::span<std::byte> out,
                                             std::chrono::milliseconds timeout) {
   // The host has sent all it wants to and waits, so an unfinished frame was cut short on the way;
   // what it would swallow are the frames behind it.
-  while (out_.empty() && reader_.buffered() > 0) {
+  const auto cut_short = [&] {
+    return out_.empty() && reader_.buffered() > 0 &&
+           (options_.frame_patience.count() == 0 ||
+            std::chrono::steady_clock::now() - last_byte_ >= options_.frame_patience);
+  };
+  while (cut_short()) {
     const std::size_t before = reader_.buffered();
     reader_.resynchronise();
     if (auto done = handle_frames(); !done) return std::unexpected(std::move(done.error()));

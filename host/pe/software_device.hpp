@@ -20,6 +20,9 @@ struct SoftwareDeviceOptions {
   ScheduleOptions schedule = ScheduleOptions();
   /// What it tells about itself, and what it refuses to go beyond.
   protocol::CapabilitiesReport capabilities = software_capabilities();
+  /// An unfinished frame is given up when it is asked for answers and no byte has come for so long.
+  /// 0 suits a host that asks only when it has sent all it wants to.
+  std::chrono::milliseconds frame_patience{0};
 };
 
 /// Answers frames in the order of their arrival, except that several Trace frames may be under way;
@@ -57,6 +60,7 @@ class SoftwareDevice final : public Endpoint {
   std::unique_ptr<Crew> crew_;
   std::vector<std::uint32_t> under_way_;  ///< sequence numbers of unanswered Trace frames
   std::chrono::steady_clock::time_point last_word_;
+  std::chrono::steady_clock::time_point last_byte_;
   protocol::DeviceState state_ = protocol::DeviceState::kEmpty;
   Refusal last_error_{protocol::ErrorCode::kNone, 0};
   std::vector<std::byte> out_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <map>
 
 #include "host/driver/image_options.hpp"
 #include "tests/adversarial/bench.hpp"
@@ -13,6 +14,16 @@ bool same(const Hit& a, const Hit& b) {
   const auto bits = [](double x) { return std::bit_cast<std::uint64_t>(x); };
   return a.id == b.id && bits(a.t) == bits(b.t) && bits(a.u) == bits(b.u) && bits(a.v) == bits(b.v);
 }
+
+namespace {
+
+/// By device, what one that was opened has said.
+std::map<std::string, protocol::CapabilitiesReport>& known() {
+  static std::map<std::string, protocol::CapabilitiesReport> map;
+  return map;
+}
+
+}  // namespace
 
 std::vector<std::string> contract_devices() {
   std::vector<std::string> names = adversarial::devices_under_test();
@@ -34,22 +45,31 @@ std::unique_ptr<Device> Contract::open(DeviceOptions options) {
     return nullptr;
   }
   EXPECT_EQ((*device)->name(), options.name);
+  if (!options.capabilities) known()[name] = (*device)->capabilities();
   return std::move(*device);
 }
 
+protocol::CapabilitiesReport Contract::capabilities() {
+  if (!known().contains(GetParam())) open();
+  return known()[GetParam()];
+}
+
 int Contract::bits() {
-  const auto device = open();
-  return device ? std::min<int>(kDefaultBits, device->capabilities().max_bits) : kDefaultBits;
+  const int most = capabilities().max_bits;
+  return most == 0 ? kDefaultBits : std::min(kDefaultBits, most);
 }
 
 ImageOptions Contract::plain(int bits, int pes) {
   ImageOptions options;
   options.bits = bits == 0 ? Contract::bits() : bits;
   options.with_scene = false;
-  const auto device = open();
-  if (!device) return options;
-  options.pes = pes == 0 ? std::min<int>(4, device->capabilities().pes) : pes;
-  return options_for(options, device->capabilities());
+  // Measured cuts take long to make; one test has them.
+  options.mapping = Mapping::kBoxes;
+  options.grid = glm::ivec3{6};
+  const protocol::CapabilitiesReport device = capabilities();
+  if (device.pes == 0) return options;
+  options.pes = pes == 0 ? std::min<int>(4, device.pes) : pes;
+  return options_for(options, device);
 }
 
 bool Contract::loads(Device& device, const Image& image) {

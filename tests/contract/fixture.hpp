@@ -27,11 +27,14 @@ class Contract : public testing::TestWithParam<std::string> {
   /// The device under test; a failure fails the test.
   static std::unique_ptr<Device> open(DeviceOptions options = {});
 
+  /// What the device under test can do. Asked once: some devices can be opened by one at a time.
+  static protocol::CapabilitiesReport capabilities();
+
   /// The default lattice bits, or as many as the device under test has.
   static int bits();
 
-  /// Image options that fit the device under test, without the scene section; bits 0: bits();
-  /// pes 0: four, or as many as it has.
+  /// Image options that fit the device under test, on a grid of 6x6x6 voxels, without the scene
+  /// section; bits 0: bits(); pes 0: four, or as many as it has.
   static ImageOptions plain(int bits = 0, int pes = 0);
 
   /// True if the device takes the image. One that goes beyond it (is_beyond) marks the test as

@@ -18,6 +18,7 @@ TEST_P(Contract, TheChunksOfASceneAnswerAsOne) {
   const Scene scene = awkward_scene(40);
   const auto segments = awkward_segments(scene, bits(), 41);
   ImageOptions options = plain();
+  options.grid.reset();
   const MemorySizes small{
       .triangles = 60, .vertices = 80, .references = 150, .cells = 60, .blocks = 64};
   options.memory = smaller_of(*options.memory, small);
