@@ -48,9 +48,9 @@ module gridrt_feedback #(
 );
   localparam int unsigned INDEX_W = (SLOTS > 1) ? $clog2(SLOTS) : 1;
 
-  logic free_valid, take, free;
-  logic [SLOT_W-1:0] free_slot, pick_slot;
-  logic [TUS-1:0] unit;
+  logic list_valid, list_take, free_valid, take, free;
+  logic [SLOT_W-1:0] list_slot, free_slot, pick_slot;
+  logic [TUS-1:0] list_unit, unit;
   logic [SLOTS-1:0] none, many, has_hit;
   logic [PES-1:0][gridrt_pkg::SLOT_EVENT_W-1:0] event_end;
   logic [gridrt_pkg::ID_W-1:0] best_id;
@@ -69,13 +69,30 @@ module gridrt_feedback #(
   ) u_slots (
       .clk_i,
       .rst_ni,
-      .valid_o(free_valid),
-      .slot_o(free_slot),
-      .unit_o(unit),
-      .take_i(take),
+      .valid_o(list_valid),
+      .slot_o(list_slot),
+      .unit_o(list_unit),
+      .take_i(list_take),
       .free_i(free),
       .free_slot_i(pick_slot)
   );
+
+  // The slot of the next ray waits in a register: a start reaches all blocks in the same clock.
+  assign list_take = list_valid && (!free_valid || take);
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      free_valid <= 1'b0;
+      free_slot <= '0;
+      unit <= '0;
+    end else begin
+      if (take) free_valid <= 1'b0;
+      if (list_take) begin
+        free_valid <= 1'b1;
+        free_slot <= list_slot;
+        unit <= list_unit;
+      end
+    end
+  end
 
   // A PE ends one task a clock: a drop goes before an event that ends one.
   logic [PES-1:0] pe_dropped;
@@ -126,14 +143,15 @@ module gridrt_feedback #(
 
   // Slots by state: busy from allocation to commit, over once nothing more is traversed.
   logic [SLOTS-1:0] busy, over, told, waited;
-  logic [SLOTS-1:0] settled, ready, after, from, pick, pick_q;
+  logic [SLOTS-1:0] settled, ready, after, upper, pick, pick_q;
   logic free_q;
 
   assign settled = busy & over & none;
   assign walking_o = busy & ~over;
   assign ready = FEEDBACK ? settled : settled | (busy & has_hit & ~told);
-  assign from = ((ready & after) != '0) ? ready & after : ready;
-  assign pick = from & (~from + SLOTS'(1));
+  // One a clock, in turn: the next one behind those chosen last. `after` follows a clock later.
+  assign upper = ready & after;
+  assign pick = (upper != '0) ? upper & (~upper + SLOTS'(1)) : ready & (~ready + SLOTS'(1));
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
@@ -147,13 +165,12 @@ module gridrt_feedback #(
       commit_o <= 1'b0;
     end else begin
       pick_q   <= pick;
-      free_q   <= (pick & settled) != '0;
-      commit_o <= (pick & ~told) != '0;
-      if (pick != '0) begin
-        after <= ~(pick | (pick - SLOTS'(1)));
-        busy  <= busy & ~(pick & settled);
-        told  <= told | pick;
-      end
+      // With feedback whatever is ready is settled and has not been told.
+      free_q   <= FEEDBACK ? ready != '0 : (pick & settled) != '0;
+      commit_o <= FEEDBACK ? ready != '0 : (pick & ~told) != '0;
+      if (pick_q != '0) after <= ~(pick_q | (pick_q - SLOTS'(1)));
+      busy <= busy & ~(pick & settled);
+      told <= told | pick;
       if (hit_valid_o && many[INDEX_W'(hit_o.slot)]) waited[INDEX_W'(hit_o.slot)] <= 1'b1;
       for (int unsigned t = 0; t < TUS; t++) begin
         if (done_valid_i[t]) over[INDEX_W'(done_slot_i[t])] <= 1'b1;
@@ -196,6 +213,8 @@ module gridrt_feedback #(
   always_ff @(posedge clk_i) begin
     if (rst_ni) begin
       assert (!(take && busy[INDEX_W'(free_slot)]));
+      assert (free_q == ((pick_q & ~busy) != '0));
+      assert (!FEEDBACK || commit_o == free_q);
       // Nobody speaks of a slot without a ray.
       assert (!(hit_valid_o && !busy[INDEX_W'(hit_o.slot)]));
       assert (!(interrupt_o.valid && !busy[INDEX_W'(interrupt_o.slot)]));

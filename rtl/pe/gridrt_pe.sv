@@ -161,8 +161,16 @@ module gridrt_pe #(
   assign queue_drop_ready = !none.valid;
   assign reference_ready = room;
   assign test = reference_valid && room;
-  assign drop_o = {none.valid || queue_drop_valid, none.valid ? none.slot : head.slot};
-  assign drop_cancelled_o = (queue_drop_valid && queue_drop_ready) || aborted;
+  // Registers, since the way from the queue's head through its limit is long.
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      drop_o <= '0;
+      drop_cancelled_o <= 1'b0;
+    end else begin
+      drop_o <= {none.valid || queue_drop_valid, none.valid ? none.slot : head.slot};
+      drop_cancelled_o <= (queue_drop_valid && queue_drop_ready) || aborted;
+    end
+  end
   assign test_o = test;
   assign busy_o = waiting || working || found_valid;
 
