@@ -1,11 +1,12 @@
 # Simulation of RTL: Verilator makes a C++ class of a module, once for each choice of parameters.
 #
 # gridrt_verilated(NAME TOP module [PREFIX class] [PARAMETERS B=17 ...] [DEFINES MACRO ...]
-#                  [FILES file.sv ...] [TRACE] [FAST])
+#                  [FILES file.sv ...] [FIRMWARE board] [TRACE] [FAST])
 #   Static library NAME with the class V<module>, or that of PREFIX (#include <Vmodule.h>). Modules
 #   below rtl/ are found by name and packages are read always; FILES names what lies elsewhere. Each
 #   parameter is a macro for users of the library, too: GRIDRT_RTL_B=17. GRIDRT_ASSERT is defined,
 #   so that the assertions of the RTL are checked. Warnings are errors. TRACE: waves as FST.
+#   FIRMWARE: that board's image (firmware/soft_core) is in the soft core's memory.
 #   FAST: as fast as it gets, without assertions, registers without reset start as zeros.
 #
 # gridrt_rtl_bench(NAME TOP module SOURCES bench.cpp ... [LINK library ...] [and all of the above])
@@ -19,6 +20,7 @@ endif()
 find_package(Python3 3.11 REQUIRED COMPONENTS Interpreter)
 find_package(Threads REQUIRED)
 find_package(ZLIB REQUIRED)
+include(GridrtPicorv32)
 
 execute_process(COMMAND ${GRIDRT_VERILATOR} --getenv VERILATOR_ROOT
   OUTPUT_VARIABLE GRIDRT_VERILATOR_ROOT OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
@@ -54,7 +56,7 @@ target_compile_options(gridrt_verilator PRIVATE -w -O2)
 target_link_libraries(gridrt_verilator PUBLIC Threads::Threads ZLIB::ZLIB)
 
 function(gridrt_verilated name)
-  cmake_parse_arguments(ARG "TRACE;FAST" "TOP;PREFIX" "PARAMETERS;DEFINES;FILES" ${ARGN})
+  cmake_parse_arguments(ARG "TRACE;FAST" "TOP;PREFIX;FIRMWARE" "PARAMETERS;DEFINES;FILES" ${ARGN})
   set(prefix V${ARG_TOP})
   if(ARG_PREFIX)
     set(prefix ${ARG_PREFIX})
@@ -77,6 +79,11 @@ function(gridrt_verilated name)
   if(ARG_TRACE)
     list(APPEND flags --trace-fst --trace-structs)
   endif()
+  if(ARG_FIRMWARE)
+    list(APPEND flags -DGRIDRT_FIRMWARE
+      -I${PROJECT_BINARY_DIR}/firmware/soft_core/${ARG_FIRMWARE})
+  endif()
+  list(APPEND flags -y ${GRIDRT_PICORV32_FOLDER} ${PROJECT_SOURCE_DIR}/rtl/soc/picorv32.vlt)
   foreach(search IN LISTS GRIDRT_RTL_FOLDERS)
     list(APPEND flags -y ${search})
   endforeach()
@@ -103,12 +110,15 @@ function(gridrt_verilated name)
   target_compile_definitions(${name} PUBLIC ${ARG_PARAMETERS})
   target_link_libraries(${name} PUBLIC gridrt_verilator)
   add_dependencies(${name} gridrt_protocol)
+  if(ARG_FIRMWARE)
+    add_dependencies(${name} gridrt_firmware_image_${ARG_FIRMWARE})
+  endif()
 endfunction()
 
 function(gridrt_rtl_bench name)
-  cmake_parse_arguments(ARG "TRACE" "TOP" "SOURCES;LINK;PARAMETERS;DEFINES;FILES" ${ARGN})
+  cmake_parse_arguments(ARG "TRACE" "TOP" "SOURCES;LINK;PARAMETERS;DEFINES;FILES;FIRMWARE" ${ARGN})
   set(model TOP ${ARG_TOP})
-  foreach(word PARAMETERS DEFINES FILES)
+  foreach(word PARAMETERS DEFINES FILES FIRMWARE)
     if(ARG_${word})
       list(APPEND model ${word} ${ARG_${word}})
     endif()
@@ -117,7 +127,7 @@ function(gridrt_rtl_bench name)
     list(APPEND model TRACE)
   endif()
   string(MAKE_C_IDENTIFIER "rtl_${ARG_TOP}_${ARG_PARAMETERS}" library)
-  if(ARG_DEFINES OR ARG_FILES OR ARG_TRACE)
+  if(ARG_DEFINES OR ARG_FILES OR ARG_FIRMWARE OR ARG_TRACE)
     string(SHA256 hash "${model}")
     string(SUBSTRING ${hash} 0 8 hash)
     string(APPEND library _${hash})

@@ -37,7 +37,12 @@ module gridrt_core #(
     input  logic [11:0] reg_address_i,  // of bytes; words of four are read and written
     input  logic [31:0] reg_write_data_i,
     output logic        reg_ready_o,
-    output logic [31:0] reg_read_data_o
+    output logic [31:0] reg_read_data_o,
+    // For who watches the board.
+    output logic        quiet_o,  // no frame, ray or answer is under way
+    output logic        busy_o,  // rays are in the engine
+    output logic        answered_o,  // one of them has been answered
+    output logic        image_o  // an image is ready
 );
   gridrt_pkg::load_t load;
   logic config_start, config_done;
@@ -48,6 +53,17 @@ module gridrt_core #(
   logic [gridrt_pkg::ID_W-1:0] ray_ignore, hit_id;
   gridrt_pkg::counts_t counts;
   gridrt_pkg::tap_t tap;
+  logic engine_hit_valid, hung;
+  assign hit_valid = engine_hit_valid && !hung;
+`ifdef GRIDRT_TEST_HANG
+  // For tests of the watchdog: a ray that ignores this id is the last one that is ever answered.
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) hung <= 1'b0;
+    else if (ray_valid && ray_ready && ray_ignore == gridrt_pkg::ID_W'('hDEAD0)) hung <= 1'b1;
+  end
+`else
+  assign hung = 1'b0;
+`endif
 
   gridrt_shell #(
       .B(B),
@@ -76,6 +92,10 @@ module gridrt_core #(
       .reg_write_data_i,
       .reg_ready_o,
       .reg_read_data_o,
+      .quiet_o,
+      .busy_o,
+      .answered_o,
+      .image_o,
       .load_o(load),
       .config_o(config_start),
       .grid_count_o(grid_count),
@@ -126,8 +146,8 @@ module gridrt_core #(
       .ray_p1_i(ray_p1),
       .ray_ignore_i(ray_ignore),
       .ray_any_i(ray_any),
-      .hit_valid_o(hit_valid),
-      .hit_ready_i(hit_ready),
+      .hit_valid_o(engine_hit_valid),
+      .hit_ready_i(hit_ready && !hung),
       .hit_o(hit),
       .hit_id_o(hit_id),
       .counts_o(counts),

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "firmware/model/board_model.hpp"
-#include "firmware/vectors/self_test_vectors.hpp"
+#include "firmware/self_test_vectors.hpp"
 #include "host/pe/software_device.hpp"
 #ifdef GRIDRT_VIRTUAL_SIM
 #include "hal/sim/boards.hpp"

@@ -1,6 +1,7 @@
 // Makes the self-test's vectors: a small image, rays, and the answers of the reference device.
 //
 // usage: gridrt-self-test-vectors BITS PES OUTPUT.cpp
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cstdio>
@@ -11,8 +12,8 @@
 
 #include "hal/frame.hpp"
 #include "hal/record_sizes.hpp"
-#include "host/driver/image_frames.hpp"
 #include "host/image/image.hpp"
+#include "host/image/image_frames.hpp"
 #include "host/pe/capabilities.hpp"
 #include "host/pe/software_device.hpp"
 
@@ -55,13 +56,13 @@ std::vector<protocol::RayCompact> rays_through(const Image& image, const ImageTr
     for (int a = 0; a < 3; ++a) {
       const auto axis = static_cast<std::size_t>(a);
       const auto box = static_cast<std::uint32_t>(image.header.max_q[axis]) + 2U;
-      const auto start = static_cast<std::uint32_t>(random() % (box + 1));
       const auto middle = static_cast<std::uint32_t>((aim.v[0][a] + aim.v[1][a] + aim.v[2][a]) / 3);
-      // As far behind the middle as the start is before it, but within the box.
-      const std::uint32_t mirrored = 2 * middle < start ? 0 : 2 * middle - start;
-      ray.p0[axis] = start;
+      // As far behind the middle as before it, within the box.
+      const std::uint32_t reach = std::min(middle, box - middle);
+      const auto step = static_cast<std::uint32_t>(random() % (2 * reach + 1));
+      ray.p0[axis] = middle - reach + step;
       ray.p1[axis] =
-          i % 2 == 0 ? static_cast<std::uint32_t>(random() % (box + 1)) : std::min(mirrored, box);
+          i % 2 == 0 ? static_cast<std::uint32_t>(random() % (box + 1)) : middle + reach - step;
     }
     ray.ignore = i % 5 == 0 ? static_cast<std::uint32_t>(i % triangles.triangles.size())
                             : protocol::kNoIdCompact;
@@ -165,7 +166,7 @@ Result<std::string> make_source(int bits, int pes) {
   if (!answers) return std::unexpected(answers.error());
   std::string out =
       "// Made by firmware/vectors/make_vectors.cpp.\n"
-      "#include \"firmware/vectors/self_test_vectors.hpp\"\n\nnamespace gridrt::firmware {\n\n"
+      "#include \"firmware/self_test_vectors.hpp\"\n\nnamespace gridrt::firmware {\n\n"
       "namespace {\n\nconstexpr uint32_t kFrames[] = {\n";
   out += numbers(*frames, 4) + "};\n\nconstexpr uint8_t kAnswers[] = {\n" + numbers(*answers, 1);
   out += "};\n\n}  // namespace\n\nconst SelfTestVectors kSelfTestVectors = {kFrames, " +

@@ -12,7 +12,8 @@ namespace gridrt {
 namespace {
 
 template <class Model>
-Result<std::unique_ptr<SimBoard>> make(const std::string& waves) {
+Result<std::unique_ptr<SimBoard>> make(const SimBoardOptions& options) {
+  const std::string& waves = options.waves;
   auto board = std::make_unique<VerilatedBoard<Model>>();
   if (!waves.empty()) {
     if (!board->kHasWaves) {
@@ -23,6 +24,7 @@ Result<std::unique_ptr<SimBoard>> make(const std::string& waves) {
       return fail(ErrorKind::kFile, waves + ": cannot be opened for writing");
     }
   }
+  board->set_flash(options.flash);
   board->power_up();
   return board;
 }
@@ -37,11 +39,12 @@ std::vector<std::string_view> sim_boards() {
 #endif
 }
 
-Result<std::unique_ptr<SimBoard>> make_sim_board(std::string_view name, const std::string& waves) {
-  if (name == "b17x4") return make<Vgridrt_b17x4>(waves);
+Result<std::unique_ptr<SimBoard>> make_sim_board(std::string_view name,
+                                                 const SimBoardOptions& options) {
+  if (name == "b17x4") return make<Vgridrt_b17x4>(options);
 #ifdef GRIDRT_SIM_TEST_BOARDS
-  if (name == "b12x2") return make<Vgridrt_b12x2>(waves);
-  if (name == "stall") return make<Vgridrt_stall>(waves);
+  if (name == "b12x2") return make<Vgridrt_b12x2>(options);
+  if (name == "stall") return make<Vgridrt_stall>(options);
 #endif
   std::string known;
   for (const std::string_view board : sim_boards()) {

@@ -16,10 +16,15 @@ namespace gridrt {
 /// and its assertions are checked (one that fails ends the program).
 std::vector<std::string_view> sim_boards();
 
-/// Makes a board and powers it up. `waves` names an FST file for all signals, which costs most of
-/// the speed and which only b17x4 has; empty: none. Errors: kUsage for an unknown name,
+struct SimBoardOptions {
+  std::string waves = {};             ///< an FST file for all signals; empty: none
+  std::vector<std::byte> flash = {};  ///< what the flash holds from flash_address on
+};
+
+/// Makes a board and powers it up. `options.waves` names an FST file for all signals, which costs
+/// most of the speed and which only b17x4 has; empty: none. Errors: kUsage for an unknown name,
 /// kUnsupported for waves of a board without, kFile if the file cannot be opened.
 Result<std::unique_ptr<SimBoard>> make_sim_board(std::string_view name,
-                                                 const std::string& waves = {});
+                                                 const SimBoardOptions& options = {});
 
 }  // namespace gridrt

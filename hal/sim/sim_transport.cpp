@@ -10,13 +10,11 @@ namespace {
 
 constexpr std::uint64_t kGap = 256;  ///< clocks between two bytes that end a receive()
 constexpr std::size_t kPiece = 4096;
-constexpr std::size_t kWord = 4;
 
-const protocol::RegisterWindow* find_window(std::uint8_t report, bool write) {
-  const auto found = std::ranges::find_if(protocol::kRegisterWindows, [=](const auto& window) {
-    return window.report == report && (write ? window.writable : window.readable);
-  });
-  return found == protocol::kRegisterWindows.end() ? nullptr : &*found;
+/// Reports that a host may write.
+bool is_writable(std::uint8_t id) {
+  return id == protocol::ResetReport::kId || id == protocol::ControlReport::kId ||
+         id == protocol::CommandReport::kId;
 }
 
 }  // namespace
@@ -98,57 +96,42 @@ Result<void> SimTransport::deliver() {
   return {};
 }
 
-Result<std::uint32_t> SimTransport::access(RegisterAccess access) {
-  board_->run({}, {}, {.quiet = options_.silent_clocks, .gap = 1}, &access);
+Result<void> SimTransport::exchange(ReportAccess& access) {
+  board_->run({}, {}, {.quiet = options_.report_clocks, .gap = 1}, &access);
   if (!access.done) {
     return fail(ErrorKind::kTimeout,
-                "the simulated board has not served its register " +
-                    std::to_string(access.address) + " for " +
-                    std::to_string(options_.silent_clocks) + " clocks",
-                "this is a defect of the RTL");
+                "the simulated board's firmware has not answered for " +
+                    std::to_string(options_.report_clocks) + " clocks, asked for report " +
+                    std::to_string(access.id),
+                "this is a defect of the firmware or the RTL");
   }
-  return access.data;
+  if (access.good) return {};
+  if (access.set && is_writable(access.id)) {
+    return fail(ErrorKind::kProtocol,
+                "the simulated board refuses what report " + std::to_string(access.id) + " says");
+  }
+  return fail(ErrorKind::kUnsupported, "the simulated board has no report " +
+                                           std::to_string(access.id) +
+                                           (access.set ? " to write" : " to read"));
 }
 
 Result<void> SimTransport::get_feature(std::uint8_t id, std::span<std::byte> body) {
-  const protocol::RegisterWindow* window = find_window(id, false);
-  if (window == nullptr) {
-    return fail(ErrorKind::kUnsupported,
-                "the simulated board has no report " + std::to_string(id) + " to read");
-  }
   if (auto sent = deliver(); !sent) return sent;
+  ReportAccess access{.id = id};
+  if (auto done = exchange(access); !done) return done;
   std::ranges::fill(body, std::byte{0});
-  for (std::size_t w = 0; w < window->words && kWord * w < body.size(); ++w) {
-    const auto read = access({.address = window->base + static_cast<std::uint32_t>(kWord * w)});
-    if (!read) return std::unexpected(read.error());
-    std::array<std::byte, kWord> word{};
-    protocol::detail::put32(word.data(), *read);
-    const std::size_t bytes = std::min(kWord, body.size() - kWord * w);
-    std::copy_n(word.begin(), bytes, body.begin() + static_cast<std::ptrdiff_t>(kWord * w));
-  }
+  std::copy_n(access.body.begin(), std::min(access.length, body.size()), body.begin());
   return {};
 }
 
 Result<void> SimTransport::set_feature(std::uint8_t id, std::span<const std::byte> body) {
-  const protocol::RegisterWindow* window = find_window(id, true);
-  if (window == nullptr) {
-    return fail(ErrorKind::kUnsupported, "report " + std::to_string(id) + " cannot be written");
-  }
-  const std::size_t bytes = kWord * window->words;
   const bool is_reset = id == protocol::ResetReport::kId;
-  if (body.size() < bytes ||
-      (is_reset && protocol::detail::get32(body.data()) != protocol::kResetKey)) {
-    return fail(ErrorKind::kProtocol,
-                is_reset ? "a Reset report without its key" : "a report that is cut short");
-  }
   const auto sent = deliver();
   if (!sent && !is_reset) return sent;  // Reset is for boards that take no more
-  for (std::size_t at = 0; at < bytes; at += kWord) {
-    const auto written = access({.write = true,
-                                 .address = window->base + static_cast<std::uint32_t>(at),
-                                 .data = protocol::detail::get32(body.data() + at)});
-    if (!written) return std::unexpected(written.error());
-  }
+  ReportAccess access{.set = true, .id = id};
+  access.length = std::min(body.size(), access.body.size());
+  std::copy_n(body.begin(), access.length, access.body.begin());
+  if (auto done = exchange(access); !done) return done;
   if (is_reset) {
     to_board_.clear();
     early_.clear();

@@ -16,16 +16,19 @@ struct SimTransportOptions {
   std::uint64_t silent_clocks = 250'000;
   /// Times in a row that a silent board may be asked again, >= 1: more is an error.
   int most_silences = 4;
+  /// Clocks that the firmware may take for a report, >= 1. Before the first it may load an image
+  /// from flash, some 40 clocks a byte, and a self-test before any.
+  std::uint64_t report_clocks = 4'000'000;
 };
 
 /// Queues what the host sends and hands it to the board, a byte a clock, in receive() and before
-/// a report is read. Feature reports are words of the board's register windows (protocol.toml,
-/// [registers]).
+/// a report is read. Feature reports pass through the board's firmware.
 ///
 /// Time limits are clocks, since the speed of a simulation says nothing about the board: a
 /// timeout given in milliseconds is not looked at. receive() returns 0 once the board is silent.
 /// Errors: kTimeout, with the clocks, if the board is silent and has not taken all bytes, if it is
-/// silent again and again, or if it does not serve its register bus.
+/// silent again and again, or if its firmware does not answer; kUnsupported and kProtocol if the
+/// firmware refuses a report.
 class SimTransport final : public Transport {
  public:
   explicit SimTransport(std::unique_ptr<SimBoard> board, SimTransportOptions options = {});
@@ -42,7 +45,7 @@ class SimTransport final : public Transport {
   [[nodiscard]] std::span<const std::byte> queued() const;
   void drop(std::size_t taken);
   Result<void> deliver();
-  Result<std::uint32_t> access(RegisterAccess access);
+  Result<void> exchange(ReportAccess& access);
   [[nodiscard]] std::unexpected<Error> stuck() const;
 
   std::unique_ptr<SimBoard> board_;

@@ -2,18 +2,21 @@
 // else is the RTL's.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <verilated.h>
 #include <verilated_fst_c.h>
 
 #include "hal/sim/board.hpp"
+#include "hal/sim/spi_flash.hpp"
 
 namespace gridrt {
 
-/// `Model` has the ports of rtl/gridrt_core.sv.
+/// `Model` has the ports of rtl/gridrt_board.sv.
 template <class Model>
 class VerilatedBoard final : public SimBoard {
  public:
@@ -25,7 +28,10 @@ class VerilatedBoard final : public SimBoard {
     model_->rst_ni = 0;
     model_->rx_valid_i = 0;
     model_->tx_ready_i = 0;
-    model_->reg_valid_i = 0;
+    model_->request_valid_i = 0;
+    model_->body_write_i = 0;
+    model_->event_taken_i = 0;
+    model_->flash_miso_i = 1;
   }
   ~VerilatedBoard() override {
     choose_context();
@@ -49,6 +55,11 @@ class VerilatedBoard final : public SimBoard {
     return false;
   }
 
+  /// What the board's flash holds from flash_address on. Before power_up().
+  void set_flash(std::vector<std::byte> content) {
+    flash_ = SpiFlash(std::move(content), protocol::kFlashAddress);
+  }
+
   /// Some clocks with reset; the streams are quiet meanwhile.
   void power_up() {
     constexpr int kResetClocks = 8;
@@ -60,33 +71,26 @@ class VerilatedBoard final : public SimBoard {
   }
 
   RunResult run(std::span<const std::byte> to_board, std::span<std::byte> from_board,
-                const RunLimits& limits, RegisterAccess* access) override {
+                const RunLimits& limits, ReportAccess* access) override {
     choose_context();
     Model& pins = *model_;
     RunResult moved;
     std::uint64_t quiet = 0;
     std::uint64_t gap = 0;
-    if (access != nullptr) {
-      pins.reg_valid_i = 1;
-      pins.reg_write_i = access->write ? 1 : 0;
-      pins.reg_address_i = static_cast<std::uint16_t>(access->address);
-      pins.reg_write_data_i = access->data;
-    }
+    Exchange exchange(access);
     for (;;) {
       const bool offer = moved.taken < to_board.size();
       pins.rx_valid_i = offer ? 1 : 0;
       if (offer) pins.rx_data_i = static_cast<std::uint8_t>(to_board[moved.taken]);
       const bool room = moved.given < from_board.size();
       pins.tx_ready_i = room ? 1 : 0;
+      if (access != nullptr) exchange.drive(pins);
       fall();  // the outputs follow the inputs; what the rising edge does is decided
       const bool took = offer && pins.rx_ready_o != 0;
       const bool gave = room && pins.tx_valid_o != 0;
       if (took) ++moved.taken;
       if (gave) from_board[moved.given++] = static_cast<std::byte>(pins.tx_data_o);
-      if (access != nullptr && pins.reg_ready_o != 0) {
-        access->data = pins.reg_read_data_o;
-        access->done = true;
-      }
+      if (access != nullptr) exchange.look(pins);
       rise();
       if (access != nullptr && access->done) break;
       quiet = took || gave ? 0 : quiet + 1;
@@ -95,19 +99,86 @@ class VerilatedBoard final : public SimBoard {
       if (access == nullptr && moved.given == from_board.size()) break;
       if (limits.stop_if_sent && moved.taken == to_board.size()) break;
     }
-    pins.reg_valid_i = 0;
+    pins.request_valid_i = 0;
+    pins.body_write_i = 0;
     return moved;
+  }
+
+  bool take_input(InputReport& report) override {
+    choose_context();
+    Model& pins = *model_;
+    pins.rx_valid_i = 0;
+    pins.tx_ready_i = 0;
+    fall();
+    const bool there = pins.event_valid_o != 0;
+    if (there) report.id = pins.event_id_o;
+    for (std::size_t i = 0; there && i < report.body.size(); ++i) {
+      pins.event_address_i = static_cast<std::uint8_t>(i);
+      pins.event_taken_i = i + 1 == report.body.size() ? 1 : 0;
+      fall();
+      report.body[i] = static_cast<std::byte>(pins.event_data_o);
+      rise();
+    }
+    pins.event_taken_i = 0;
+    return there;
   }
 
   [[nodiscard]] std::uint64_t clocks() const override { return clocks_; }
 
  private:
+  /// One control report, as endpoint 0 goes about it: the body that is set byte by byte, the
+  /// request, the body that was got byte by byte.
+  class Exchange {
+   public:
+    explicit Exchange(ReportAccess* access) : access_(access) {
+      if (access != nullptr && !access->set) writing_ = false;
+    }
+    void drive(Model& pins) {
+      if (writing_ && at_ == access_->length) writing_ = false;
+      pins.body_write_i = writing_ ? 1 : 0;
+      pins.request_valid_i = !writing_ && !reading_ ? 1 : 0;
+      pins.request_set_i = access_->set ? 1 : 0;
+      pins.request_id_i = access_->id;
+      pins.request_length_i = static_cast<std::uint8_t>(access_->length);
+      pins.body_address_i = static_cast<std::uint8_t>(at_);
+      if (writing_) pins.body_data_i = static_cast<std::uint8_t>(access_->body[at_]);
+    }
+    void look(Model& pins) {
+      if (writing_) {
+        ++at_;
+      } else if (reading_) {
+        access_->body[at_++] = static_cast<std::byte>(pins.body_data_o);
+        access_->done = at_ == access_->length;
+      } else if (pins.answer_valid_o != 0) {
+        access_->good = pins.answer_good_o != 0;
+        if (access_->set)
+          access_->length = 0;
+        else
+          access_->length = std::min<std::size_t>(pins.answer_length_o, access_->body.size());
+        reading_ = !access_->set && access_->good && access_->length > 0;
+        access_->done = !reading_;
+        at_ = 0;
+      }
+    }
+
+   private:
+    ReportAccess* access_;
+    bool writing_ = true;
+    bool reading_ = false;
+    std::size_t at_ = 0;
+  };
+
   /// Verilator's library looks some things up in the context of the thread, which is one of several
   /// boards' and may be gone.
   void choose_context() { Verilated::threadContextp(context_.get()); }
   void fall() {
     model_->clk_i = 0;
     model_->eval();
+    if (model_->flash_cs_no == 0 || flash_selected_) {
+      flash_selected_ = model_->flash_cs_no == 0;
+      model_->flash_miso_i =
+          flash_.step(flash_selected_, model_->flash_clk_o != 0, model_->flash_mosi_o != 0) ? 1 : 0;
+    }
     if (waves_) waves_->dump(2 * clocks_);
   }
   void rise() {
@@ -121,6 +192,8 @@ class VerilatedBoard final : public SimBoard {
   std::unique_ptr<Model> model_;
   std::unique_ptr<VerilatedFstC> waves_;
   std::uint64_t clocks_ = 0;
+  SpiFlash flash_;
+  bool flash_selected_ = false;
 };
 
 }  // namespace gridrt

@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 
 #include "hal/crc32c.hpp"
-#include "host/driver/image_frames.hpp"
 #include "host/driver/upload.hpp"
 #include "host/image/image_file.hpp"
+#include "host/image/image_frames.hpp"
 
 namespace gridrt {
 

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "host/driver/flash_image.hpp"
 #include "host/driver/ray_log.hpp"
 #include "host/driver/ray_order.hpp"
 #include "host/driver/ray_records.hpp"
@@ -58,14 +59,24 @@ Result<void> Session::load(const Image& image) {
   if (auto fits = check_fits(image, capabilities_); !fits) return fits;
   Result<Answers> answers = Answers::make(image);
   if (!answers) return std::unexpected(std::move(answers.error()));
+  layout_ = static_cast<protocol::Layout>(image.header.layout);
+  if (is_resident(image)) {
+    answers_ = std::move(*answers);
+    return {};
+  }
   const auto start = std::chrono::steady_clock::now();
   if (auto done = upload(connection_, image, capabilities_, retries_); !done) return done;
   upload_seconds_ +=
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   ++uploads_;
-  layout_ = static_cast<protocol::Layout>(image.header.layout);
   answers_ = std::move(*answers);
   return {};
+}
+
+/// Whether a board has loaded this very image from its flash. Boards alone have the report.
+bool Session::is_resident(const Image& image) {
+  const auto boot = get_report<protocol::BootReport>(connection_.transport());
+  return boot && boot->resident == 1 && boot->fingerprint == fingerprint(image);
 }
 
 std::size_t Session::batch_size() const {

@@ -63,6 +63,7 @@ class Session final : public Device {
   };
 
   Session(std::unique_ptr<Transport> transport, const DeviceOptions& options);
+  bool is_resident(const Image& image);
   Result<Batch> make_batch(const Work& work, std::size_t first);
   [[nodiscard]] std::size_t batch_size() const;
   Result<void> collect(Work& work);

@@ -20,7 +20,7 @@ Result<std::unique_ptr<Device>> open_sim(const DeviceOptions& options) {
   const std::size_t colon = options.name.find(':');
   const std::string board_name = colon == std::string::npos ? std::string(sim_boards().front())
                                                             : options.name.substr(colon + 1);
-  Result<std::unique_ptr<SimBoard>> board = make_sim_board(board_name, options.waves);
+  Result<std::unique_ptr<SimBoard>> board = make_sim_board(board_name, {.waves = options.waves});
   if (!board) return std::unexpected(std::move(board.error()));
   Result<std::unique_ptr<Session>> session =
       Session::open(std::make_unique<SimTransport>(std::move(*board)), options);

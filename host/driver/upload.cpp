@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
-#include "host/driver/image_frames.hpp"
 #include "host/image/image_file.hpp"
+#include "host/image/image_frames.hpp"
 
 namespace gridrt {
 namespace {

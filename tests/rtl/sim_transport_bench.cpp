@@ -52,7 +52,7 @@ TEST(SimTransport, BytesComeBackInOrderHoweverTheyAreCut) {
     if (random() % 3 == 0) {
       const auto read = get_report<protocol::StatusReport>(link);  // bytes come meanwhile
       ASSERT_TRUE(read) << read.error().message;
-      EXPECT_EQ(read->error_detail, ((sent.size() & 0xFFFFU) << 8U) + 0xC4U);
+      EXPECT_EQ(read->state + 256U * read->reserved, sent.size() & 0xFFFFU);
     }
     std::vector<std::byte> out(1 + random() % 100);
     const auto got = link.receive(out, kAnyTime);
@@ -106,19 +106,17 @@ TEST(SimTransport, ResetBringsADeafBoardBack) {
   EXPECT_EQ(receive_all(link), bytes({5}));  // what was on its way is gone
 }
 
-TEST(SimTransport, ReportsAreTheWordsOfTheirWindows) {
+TEST(SimTransport, ReportsPassThroughTheMailbox) {
   SimTransport link = open();
-  const auto report = get_report<protocol::CapabilitiesReport>(link);
-  ASSERT_TRUE(report) << report.error().message;
-  EXPECT_EQ(report->max_payload, 0x84U);
-  EXPECT_EQ(report->max_blocks, 0x9CU);
+  std::array<std::byte, 63> whole{};
+  whole.fill(std::byte{9});
+  ASSERT_TRUE(link.get_feature(protocol::StatusReport::kId, whole));
+  EXPECT_EQ(whole[8], std::byte{8 + protocol::StatusReport::kId});
+  EXPECT_EQ(whole[39], std::byte{39 + protocol::StatusReport::kId});
+  EXPECT_EQ(whole[40], std::byte{0});  // behind what was answered
   std::array<std::byte, 5> part{};
   ASSERT_TRUE(link.get_feature(protocol::CapabilitiesReport::kId, part));
-  EXPECT_EQ(part[4], std::byte{0x84});
-  std::array<std::byte, 63> whole{};
-  ASSERT_TRUE(link.get_feature(protocol::StatusReport::kId, whole));
-  EXPECT_EQ(whole[8], std::byte{0xC8});
-  EXPECT_EQ(whole[12], std::byte{0});
+  EXPECT_EQ(part[4], std::byte{4 + protocol::CapabilitiesReport::kId});
   for (const int id : {0, 5, 16, 99}) {  // Reset cannot be read
     const auto none = link.get_feature(static_cast<std::uint8_t>(id), whole);
     ASSERT_FALSE(none);
@@ -126,7 +124,31 @@ TEST(SimTransport, ReportsAreTheWordsOfTheirWindows) {
   }
   EXPECT_EQ(link.set_feature(4, whole).error().kind, ErrorKind::kUnsupported);
   EXPECT_EQ(link.set_feature(7, std::span(whole).first(7)).error().kind, ErrorKind::kProtocol);
-  EXPECT_TRUE(link.set_feature(7, whole));
+  EXPECT_TRUE(link.set_feature(7, std::span(whole).first(11)));
+  ASSERT_TRUE(link.get_feature(protocol::StatusReport::kId, part));
+  EXPECT_EQ(part[2], std::byte{11});
+  EXPECT_EQ(part[3], whole[0]);
+}
+
+TEST(SimTransport, FirmwareThatDoesNotAnswerIsATimeoutInClocks) {
+  SimTransport link = open({.report_clocks = 5000});
+  std::array<std::byte, 4> body{};
+  const auto got = link.get_feature(200, body);
+  ASSERT_FALSE(got);
+  EXPECT_EQ(got.error().kind, ErrorKind::kTimeout);
+  EXPECT_NE(got.error().message.find("5000 clocks"), std::string::npos) << got.error().message;
+  EXPECT_TRUE(link.get_feature(protocol::StatusReport::kId, body));  // the request was taken back
+}
+
+TEST(SimTransport, AnInputReportIsTakenOnce) {
+  Board board;
+  board.power_up();
+  InputReport report;
+  ASSERT_TRUE(board.take_input(report));
+  EXPECT_EQ(report.id, 32);
+  EXPECT_EQ(report.body[0], std::byte{100});
+  EXPECT_EQ(report.body[62], std::byte{162});
+  EXPECT_FALSE(board.take_input(report));
 }
 
 TEST(SimTransport, WavesAreWritten) {

@@ -2,7 +2,7 @@
 #include <cstring>
 
 #include "hal/crc32c.hpp"
-#include "host/driver/image_frames.hpp"
+#include "host/image/image_frames.hpp"
 #include "tests/unit/firmware_support.hpp"
 
 namespace gridrt {

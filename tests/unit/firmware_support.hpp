@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "firmware/model/board_model.hpp"
-#include "firmware/vectors/self_test_vectors.hpp"
+#include "firmware/self_test_vectors.hpp"
 #include "host/driver/flash_image.hpp"
 #include "host/pe/capabilities.hpp"
 #include "host/pe/software_device.hpp"

@@ -1,4 +1,4 @@
-#include "host/driver/image_frames.hpp"
+#include "host/image/image_frames.hpp"
 
 #include <algorithm>
 #include <array>

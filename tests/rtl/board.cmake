@@ -1,0 +1,6 @@
+# The board with its firmware on the soft core: reports, self-test, flash, hangs. One that can be hung
+# on purpose, with short limits.
+gridrt_rtl_bench(rtl_board TOP gridrt_board FIRMWARE b12x2 DEFINES GRIDRT_TEST_HANG
+  PARAMETERS B=12 PES=2 HANG_CLOCKS=20000 BUS_CLOCKS=20000
+  SOURCES board_firmware_test.cpp
+  LINK gridrt_driver gridrt_pe gridrt_image gridrt_scene gridrt_hal)
