@@ -23,9 +23,10 @@ package gridrt_pkg;
   localparam logic [ID_W-1:0] NO_ID = '1;
   // Widths of the structs below, for arrays of them: yosys takes neither $bits of a type in a
   // package nor fields of an array's element.
-  localparam int unsigned TASK_W = SLOT_W + REF_W + LIST_W + 6 + DIST_W;
+  localparam int unsigned TASK_W = SLOT_W + REF_W + LIST_W + 8 + DIST_W;
   localparam int unsigned EVENT_W = SLOT_W + 2 + Q_W + ID_W + DIST_W;
-  localparam int unsigned BUNDLE_W = SLOT_W + CELL_W + 3 * 8 + 8 * 6 + 2 * DIST_W;
+  localparam int unsigned WAY_W = 2 + 4 + 2 * 4 * 4;
+  localparam int unsigned BUNDLE_W = SLOT_W + CELL_W + 3 * 8 + WAY_W + 2 * DIST_W;
   localparam int unsigned INTERRUPT_W = 1 + SLOT_W + DIST_W;
   localparam int unsigned SLOT_EVENT_W = 1 + SLOT_W;
   /* verilator lint_on UNUSEDPARAM */
@@ -35,7 +36,7 @@ package gridrt_pkg;
     logic [SLOT_W-1:0] slot;
     logic [REF_W-1:0]  first;
     logic [LIST_W-1:0] count;  // >= 1
-    logic [5:0]        halves;  // halves of the voxel that the ray touches: bit 2 axis + half
+    logic [7:0]        octants;  // of the voxel, that the ray touches: bit x + 2 y + 4 z
     logic [DIST_W-1:0] enter;  // where the ray enters the voxel's slab
   } task_t;
 
@@ -49,6 +50,16 @@ package gridrt_pkg;
     logic [DIST_W-1:0] limit;  // slabs entered beyond it hold no smaller key
   } event_t;
 
+  // A ray's way through a block: the four half-slabs of the dominant axis a that it is in, and the four
+  // half-voxels of the other axes b = a + 1, c = a + 2 (modulo 3) in which it is within each. Within a
+  // half-slab it meets every half that it has on b together with every half on c, a superset of the
+  // truth. Not mirrored.
+  typedef struct packed {
+    logic [1:0]           axis;
+    logic [3:0]           holds;  // by half-slab
+    logic [1:0][3:0][3:0] halves;  // b, c; by half-slab and half-voxel
+  } way_t;
+
   // The voxels of one 2x2x2 block that a ray meets, from a traversal unit to an expander. A voxel is
   // a bit of the block, x + 2 y + 4 z in the grid's own (not mirrored) axes. Voxels of the near slab
   // come before those of the far one; within a slab any order is right.
@@ -58,7 +69,7 @@ package gridrt_pkg;
     logic [7:0] occ;  // occupied voxels: the record of voxel v is base + popcount(occ below bit v)
     logic [7:0] cand;  // voxels to test: met by the ray and occupied, a part of occ, not empty
     logic [7:0] front;  // voxels in the slab (of the dominant axis) that the ray enters first
-    logic [7:0][5:0] halves;  // per voxel in cand: halves that the ray touches, bit 2 axis + half
+    logic [WAY_W-1:0] way;  // through the block: way_t
     logic [DIST_W-1:0] near_enter;  // where the ray enters the near slab, 0 if it starts in it
     logic [DIST_W-1:0] far_enter;  // where it enters the far slab
   } bundle_t;
@@ -90,7 +101,7 @@ package gridrt_pkg;
     logic       ray;  // a ray has been committed
     logic [2:0] steps;  // traversal steps
     logic [2:0] tests;  // exact tests
-    logic [4:0] masked;  // references left out by the half-voxel mask
+    logic [4:0] masked;  // references left out by their octants
     logic [2:0] interrupts;  // tasks and voxels cancelled by an earlier hit
     logic       feedback_wait;  // a hit that waited for earlier voxels has been committed
     logic       in_flight;  // at least one ray is in the engine
@@ -114,7 +125,7 @@ package gridrt_pkg;
     logic [PE_W-1:0]   task_pe;
     logic [REF_W-1:0]  task_first;
     logic [LIST_W-1:0] task_count;
-    logic [5:0]        task_halves;
+    logic [7:0]        task_octants;
     logic [DIST_W-1:0] task_enter;
     logic              expand_drop;  // a voxel is cancelled before it becomes a task
     logic [3:0]        test_valid;  // per PE: an exact test ends

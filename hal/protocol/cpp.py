@@ -2,7 +2,7 @@
 
 from cpp_records import codec, fixed_record
 from cpp_support import FOOTER, HEADER, SUPPORT
-from model import ByteField, Enum, Layout, Protocol, Struct, camel, snake
+from model import ByteField, Enum, Layout, Protocol, Struct, Table, camel, snake
 
 CPP_TYPES = {
     "u8": "std::uint8_t", "u16": "std::uint16_t", "u32": "std::uint32_t", "u64": "std::uint64_t",
@@ -109,6 +109,12 @@ def layout_limits(layouts: tuple[Layout, ...]) -> str:
     return "\n".join(lines)
 
 
+def table(t: Table) -> str:
+    rows = [", ".join(f"{v:#x}" for v in t.values[i:i + 8]) for i in range(0, len(t.values), 8)]
+    return (f"/// {t.doc}\ninline constexpr std::array<std::uint{t.width}_t, {len(t.values)}> "
+            f"k{camel(t.name)}{{\n    " + ",\n    ".join(rows) + "};\n\n")
+
+
 def windows(protocol: Protocol) -> str:
     lines = ["/// Registers of a board's shell that hold the body of a report: 32-bit words from a",
              "/// byte address on.",
@@ -133,6 +139,7 @@ def cpp_header(protocol: Protocol) -> str:
     parts += [byte_struct(s) for s in protocol.structs]
     parts += [fixed_record(r) for r in protocol.records if r.bytes is not None]
     parts += [codec(r) for r in protocol.records if r.bytes is None]
+    parts += [table(t) for t in protocol.tables]
     parts.append(layout_limits(protocol.layouts))
     parts += [byte_struct(r) for r in protocol.reports]
     parts.append(windows(protocol))

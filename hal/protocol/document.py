@@ -75,6 +75,12 @@ def document(protocol: Protocol) -> str:
                "bytes. A width in code type is a field of `ImageHeader`.\n\n")
     for r in protocol.records:
         out.append(f"### {r.name}\n\n{r.doc} {record_size(protocol, r)}\n\n{bit_table(r)}")
+    out.append("## Tables\n\n")
+    for t in protocol.tables:
+        out.append(f"### {t.name}\n\n{t.doc} {t.width} bits each.\n\n")
+        out.append(table(["index", "values from there on"],
+                         [[i, ", ".join(f"{v:#x}" for v in t.values[i:i + 8])]
+                          for i in range(0, len(t.values), 8)]))
     out.append("## Layouts\n\n")
     keys = list(protocol.layouts[0].values)
     out.append(table(["", *[layout.name for layout in protocol.layouts]],

@@ -96,6 +96,16 @@ class Record:
 
 
 @dataclass(frozen=True)
+class Table:
+    """Values that records refer to by index."""
+
+    name: str
+    width: int
+    values: tuple[int, ...]
+    doc: str
+
+
+@dataclass(frozen=True)
 class Layout:
     name: str
     values: dict[str, int]
@@ -162,6 +172,7 @@ class Protocol:
     enums: tuple[Enum, ...]
     structs: tuple[Struct, ...]
     records: tuple[Record, ...]
+    tables: tuple[Table, ...]
     layouts: tuple[Layout, ...]
     reports: tuple[Struct, ...]
     windows: tuple[Window, ...]

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from checks import camel_name, check_keys, integer, require, snake_name, text, unique
 from model import (TYPE_BYTES, BitField, ByteField, Constant, Enum, EnumValue, Layout, Protocol,
-                   Record, SourceError, Struct, Usb)
+                   Record, SourceError, Struct, Table, Usb)
 from peripherals import read_peripheral, read_window
 
 MAX_RECORD_BITS = 128  # a record with widths from the header, each at most 32
@@ -144,6 +144,17 @@ CAPACITIES = {  # entries that an index of that width must reach
 }
 
 
+def read_table(name: str, table: dict) -> Table:
+    place = f"tables.{name}"
+    check_keys(table, place, {"width", "doc", "values"})
+    require(table["width"] in (8, 16, 32), f"{place}.width", "must be 8, 16 or 32")
+    require(isinstance(table["values"], list) and table["values"] != [], f"{place}.values",
+            "must be a list that is not empty")
+    values = tuple(integer(v, f"{place}.values[{i}]", 0, (1 << table["width"]) - 1)
+                   for i, v in enumerate(table["values"]))
+    return Table(snake_name(name, place), table["width"], values, text(table["doc"], f"{place}.doc"))
+
+
 def read_layouts(tables: dict, enums: tuple[Enum, ...], records: tuple[Record, ...]):
     known = next((e for e in enums if e.name == "Layout"), None)
     require(known is not None, "enums.Layout", "is missing")
@@ -213,7 +224,7 @@ def read_protocol(path: Path) -> Protocol:
 
 def build(source: dict) -> Protocol:
     check_keys(source, "top level",
-               {"protocol", "enums", "structs", "records", "layouts", "reports", "registers",
+               {"protocol", "enums", "structs", "records", "tables", "layouts", "reports", "registers",
                 "peripherals", "usb"})
     constants = read_constants(source["protocol"])
     report_bytes = next((c.value for c in constants if c.name == "report_bytes"), None)
@@ -223,6 +234,7 @@ def build(source: dict) -> Protocol:
     header = next((s for s in structs if s.name == "ImageHeader"), None)
     require(header is not None, "structs.ImageHeader", "is missing")
     records = tuple(read_record(n, t, header) for n, t in source["records"].items())
+    tables = tuple(read_table(n, t) for n, t in source["tables"].items())
     layouts = read_layouts(source["layouts"], enums, records)
     reports = tuple(read_report(n, t, report_bytes) for n, t in source["reports"].items())
     unique([r.report_id for r in reports], "reports", "id")
@@ -231,5 +243,5 @@ def build(source: dict) -> Protocol:
     unique([x.base for x in (*windows, *peripherals)], "registers", "base")
     names = [x.name for group in (enums, structs, records, reports) for x in group]
     unique(names, "top level", "type")
-    return Protocol(constants, enums, structs, records, layouts, reports, windows,
+    return Protocol(constants, enums, structs, records, tables, layouts, reports, windows,
                     read_usb(source["usb"], report_bytes), peripherals)

@@ -6,7 +6,7 @@ little-endian byte stream.
 
 import re
 
-from model import Enum, Protocol, Record, SourceError, Struct, snake
+from model import Enum, Protocol, Record, SourceError, Struct, Table, snake
 
 # Keywords of IEEE 1800-2017 that could be field names; such a field gets a trailing underscore.
 SV_KEYWORDS = frozenset(
@@ -104,6 +104,14 @@ def record(protocol: Protocol, r: Record) -> str:
     return out + offsets(name, fields) + packed(name, r.doc, fields, 8 * stride - bits)
 
 
+def table(t: Table) -> str:
+    """One vector: yosys reads no parameters that are arrays."""
+    bits = t.width * len(t.values)
+    value = sum(v << (t.width * i) for i, v in enumerate(t.values))
+    return (f"  // {t.doc}\n  // Entry i is bits [{t.width}*i +: {t.width}].\n"
+            f"  localparam logic [{bits - 1}:0] {t.name.upper()} = {bits}'h{value:x};\n\n")
+
+
 def sv_package(protocol: Protocol) -> str:
     out = [HEADER]
     for c in protocol.constants:
@@ -115,6 +123,7 @@ def sv_package(protocol: Protocol) -> str:
     out += [enum(e) for e in protocol.enums]
     out += [byte_struct(s) for s in protocol.structs]
     out += [record(protocol, r) for r in protocol.records]
+    out += [table(t) for t in protocol.tables]
     out += [byte_struct(r) for r in protocol.reports]
     for w in protocol.windows:
         name = f"REGISTERS_{snake(w.name).upper()}"
@@ -133,7 +142,7 @@ def sv_package(protocol: Protocol) -> str:
 
 def check_names(package: str) -> None:
     """All names of the package share one scope; two of the source may meet there."""
-    names = re.findall(r"^ +localparam int unsigned (\w+)|^    ([A-Z]\w*) =|^  } (\w+);", package,
+    names = re.findall(r"^ +localparam (?:int unsigned|logic \[\d+:0\]) (\w+)|^    ([A-Z]\w*) =|^  } (\w+);", package,
                        re.MULTILINE)
     seen = set()
     for name in ("".join(groups) for groups in names):

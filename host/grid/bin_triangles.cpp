@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "host/grid/octants.hpp"
 #include "host/grid/triangle_box.hpp"
 #include "host/grid/voxel_grid.hpp"
 
@@ -32,19 +33,6 @@ CellRange bounding_cells(const VoxelGrid& grid, const LatticeTriangle& t) {
   return range;
 }
 
-HalfMask triangle_halves(const TriangleBoxTest& test, const glm::ivec3& lo, const glm::ivec3& hi,
-                         int margin) {
-  unsigned mask = 0;
-  for (int a = 0; a < 3; ++a) {
-    for (int half = 0; half < 2; ++half) {
-      if (test.meets(quarter_half_box(lo, hi, margin, a, half))) {
-        mask |= 1U << (2 * a + half);
-      }
-    }
-  }
-  return static_cast<HalfMask>(mask);
-}
-
 }  // namespace
 
 VoxelLists bin_triangles(const VoxelGrid& grid, std::span<const LatticeTriangle> triangles) {
@@ -63,10 +51,10 @@ VoxelLists bin_triangles(const VoxelGrid& grid, std::span<const LatticeTriangle>
           const glm::ivec3 lo = cell * grid.edge;
           const glm::ivec3 hi = lo + grid.edge;
           if (!test.meets(quarter_box(lo, hi, grid.margin))) continue;
-          const HalfMask mask = triangle_halves(test, lo, hi, grid.margin);
+          const OctantSet octants = triangle_octants(test, grid, cell);
           const std::size_t index = grid.index(cell);
           entries.push_back(
-              {static_cast<std::uint32_t>(index), {static_cast<std::uint32_t>(i), mask}});
+              {static_cast<std::uint32_t>(index), {static_cast<std::uint32_t>(i), octants}});
           ++lists.first[index + 1];
         }
       }

@@ -129,21 +129,4 @@ void SlabMarch::skip_blocks(int blocks) {
   advance(std::abs(target - slab_));
 }
 
-HalfMask ray_halves(const VoxelGrid& grid, const glm::ivec3& p0, const glm::ivec3& p1,
-                    const VoxelVisit& visit) {
-  unsigned mask = 0;
-  for (int a = 0; a < 3; ++a) {
-    // Twice the offset of the voxel's middle from p0, against twice the offset of the segment's
-    // position at either end of the visit; times the fraction's denominator, all below 2^52.
-    const std::int64_t middle =
-        (2 * std::int64_t{visit.voxel[a]} + 1) * grid.edge[a] - 2 * std::int64_t{p0[a]};
-    const std::int64_t d = 2 * (std::int64_t{p1[a]} - p0[a]);
-    const std::int64_t at_enter = d * visit.enter.num - middle * visit.enter.den;
-    const std::int64_t at_leave = d * visit.leave.num - middle * visit.leave.den;
-    if (at_enter <= 0 || at_leave <= 0) mask |= 1U << (2 * a);
-    if (at_enter >= 0 || at_leave >= 0) mask |= 2U << (2 * a);
-  }
-  return static_cast<HalfMask>(mask);
-}
-
 }  // namespace gridrt

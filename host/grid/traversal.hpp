@@ -112,8 +112,4 @@ std::uint64_t traverse(const VoxelGrid& grid, const glm::ivec3& p0, const glm::i
   return steps;
 }
 
-/// The halves of the voxel, per axis, that the visit's part of the segment touches.
-HalfMask ray_halves(const VoxelGrid& grid, const glm::ivec3& p0, const glm::ivec3& p1,
-                    const VoxelVisit& visit);
-
 }  // namespace gridrt

@@ -13,12 +13,13 @@ QuarterBox quarter_box(const glm::ivec3& lo, const glm::ivec3& hi, int margin) {
   return {2L * (l + h), 2L * (h - l) + 4L * margin};
 }
 
-QuarterBox quarter_half_box(const glm::ivec3& lo, const glm::ivec3& hi, int margin, int axis,
-                            int half) {
+QuarterBox quarter_octant_box(const glm::ivec3& lo, const glm::ivec3& hi, int margin, int octant) {
   QuarterBox box = quarter_box(lo, hi, margin);
-  const std::int64_t extent = std::int64_t{hi[axis]} - lo[axis];
-  box.centre[axis] += half == 0 ? -extent : extent;
-  box.half[axis] = extent + 4L * margin;
+  for (int a = 0; a < 3; ++a) {
+    const std::int64_t extent = std::int64_t{hi[a]} - lo[a];
+    box.centre[a] += ((octant >> a) & 1) == 0 ? -extent : extent;
+    box.half[a] = extent + 4L * margin;
+  }
   return box;
 }
 

@@ -7,18 +7,17 @@
 
 namespace gridrt {
 
-/// A closed box in quarter lattice steps (so that the halves of a voxel have integer centres):
+/// A closed box in quarter lattice steps (so that the octants of a voxel have integer centres):
 /// |x - centre| <= half per axis.
 struct QuarterBox {
   glm::i64vec3 centre{0};
   glm::i64vec3 half{0};
 };
 
-/// The box [lo, hi] (lattice steps), or one half of it along `axis` (half 0 or 1), grown by
-/// `margin` lattice steps on every side.
+/// The box [lo, hi] (lattice steps), or one octant of it (0 to 7, bit a: the upper half of axis a),
+/// grown by `margin` lattice steps on every side.
 QuarterBox quarter_box(const glm::ivec3& lo, const glm::ivec3& hi, int margin);
-QuarterBox quarter_half_box(const glm::ivec3& lo, const glm::ivec3& hi, int margin, int axis,
-                            int half);
+QuarterBox quarter_octant_box(const glm::ivec3& lo, const glm::ivec3& hi, int margin, int octant);
 
 /// A triangle prepared for many boxes. Exact for bits <= 24.
 /// Source of the method: Akenine-Moeller, "Fast 3D Triangle-Box Overlap Testing", 2001.

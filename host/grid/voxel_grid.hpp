@@ -37,14 +37,15 @@ struct VoxelGrid {
   }
 };
 
-/// Which half of the voxel a triangle (or a ray) touches, per axis: bit 2 axis + half.
-using HalfMask = std::uint8_t;
-inline constexpr HalfMask kAllHalves = 0x3F;
+/// Which octants of the voxel a triangle (or a ray) touches: bit x + 2 y + 4 z, 1 for the upper
+/// half of an axis.
+using OctantSet = std::uint8_t;
+inline constexpr OctantSet kAllOctants = 0xFF;
 
 /// One triangle in one voxel.
 struct VoxelReference {
   std::uint32_t triangle;  ///< index into the triangles the grid was built from
-  HalfMask mask;           ///< halves of the voxel that it touches, margin included
+  OctantSet octants;       ///< that it touches, margin included
 };
 
 /// References by voxel: those of voxel i are references[first[i] .. first[i + 1]), ascending.

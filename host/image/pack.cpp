@@ -9,6 +9,7 @@
 
 #include "host/image/blocks.hpp"
 #include "host/image/limits.hpp"
+#include "host/image/octant_code.hpp"
 
 namespace gridrt {
 namespace {
@@ -148,7 +149,8 @@ class Collector {
     RecordWriter<protocol::ReferenceCodec> references(image.header, pe.references);
     for (const std::size_t cell : pe.cells) {
       for (const VoxelReference& r : list(cell)) {
-        references.add(protocol::ReferenceRecord{triangle_index_[r.triangle], r.mask});
+        references.add(
+            protocol::ReferenceRecord{triangle_index_[r.triangle], octant_code(r.octants)});
       }
     }
     for (const std::uint32_t v : pe.vertices) vertex_index_[v] = kNone;

@@ -6,8 +6,10 @@
 
 #include <glm/geometric.hpp>
 
+#include "host/grid/octants.hpp"
 #include "host/grid/traversal.hpp"
 #include "host/image/blocks.hpp"
+#include "host/image/octant_code.hpp"
 #include "host/image/uniform.hpp"
 
 namespace gridrt {
@@ -70,11 +72,6 @@ Ray ray_through_box(const Lattice& lattice, const glm::dvec3& direction, Uniform
     ray.origin[a] = lo[a] + part * extent[a] - ray.direction[a];
   }
   return ray;
-}
-
-bool share_halves(unsigned a, unsigned b) {
-  const unsigned both = a & b;
-  return (both & 0x03U) != 0 && (both & 0x0CU) != 0 && (both & 0x30U) != 0;
 }
 
 /// A grid with what a traversal unit reads of it.
@@ -231,10 +228,10 @@ GridLoad RaySample::measure(const VoxelGrid& grid, const VoxelLists& lists) {
     steps += walk.run(s.segment, s.hit.quotient, [&](const VoxelVisit& v) {
       const std::span<const VoxelReference> list = walk.list(v.voxel);
       if (list.empty()) return;
-      const HalfMask halves = ray_halves(grid, s.segment.p0, s.segment.p1, v);
+      const OctantSet octants = ray_octants(grid, s.segment.p0, s.segment.p1, v);
       std::size_t tests = 0;
       for (const VoxelReference& r : list) {
-        if (share_halves(r.mask, halves)) ++tests;
+        if ((octants_of_code(octant_code(r.octants)) & octants) != 0) ++tests;
       }
       tasks += 1.0;
       const std::size_t clocks = std::max({(list.size() + 1) / 2, tests, std::size_t{1}});

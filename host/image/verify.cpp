@@ -7,6 +7,7 @@
 
 #include "host/image/blocks.hpp"
 #include "host/image/image_file.hpp"
+#include "host/image/octant_code.hpp"
 #include "host/image/pack.hpp"
 #include "host/image/triangles.hpp"
 #include "host/image/weld.hpp"
@@ -28,7 +29,7 @@ std::string text(const protocol::CellRecord& r) {
   return fmt::format("first {}, count {}, PE {}", r.first, r.count, r.pe);
 }
 std::string text(const protocol::ReferenceRecord& r) {
-  return fmt::format("triangle {}, mask {:#04x}", r.triangle, r.mask);
+  return fmt::format("triangle {}, octants {:#04x}", r.triangle, octants_of_code(r.octants));
 }
 std::string text(const protocol::TriangleRecord& r) {
   return fmt::format("vertices {}, id {}", fmt::join(r.vertex, " "), r.id);

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "host/grid/octants.hpp"
+
 namespace gridrt {
 
 Accepted<Engine> Engine::assemble(TraversalMemory traversal, std::vector<std::optional<Pe>> pes) {
@@ -42,9 +44,9 @@ PeAnswer Engine::closest_hit(const PeRay& ray, PeCounters& counters,
           if (observer != nullptr) observer->on_voxel(visit, cell, 0);
           return true;
         }
-        const HalfMask halves = ray_halves(grid, ray.p0, ray.p1, visit);
-        if (observer != nullptr) observer->on_voxel(visit, cell, halves);
-        pes_[cell->pe]->test(ray, cell->first, cell->count, halves, best, counters, observer);
+        const OctantSet octants = ray_octants(grid, ray.p0, ray.p1, visit);
+        if (observer != nullptr) observer->on_voxel(visit, cell, octants);
+        pes_[cell->pe]->test(ray, cell->first, cell->count, octants, best, counters, observer);
         return true;
       });
   ++counters.rays;
@@ -61,8 +63,8 @@ bool Engine::any_hit(const PeRay& ray, PeCounters& counters) const {
       [&](const VoxelVisit& visit) {
         const Cell* cell = traversal_.find(visit.voxel);
         if (cell == nullptr || !pes_[cell->pe]) return true;
-        const HalfMask halves = ray_halves(grid, ray.p0, ray.p1, visit);
-        hit = pes_[cell->pe]->test_any(ray, cell->first, cell->count, halves, counters);
+        const OctantSet octants = ray_octants(grid, ray.p0, ray.p1, visit);
+        hit = pes_[cell->pe]->test_any(ray, cell->first, cell->count, octants, counters);
         if (hit) ++counters.interrupts;
         return !hit;
       });

@@ -1,17 +1,15 @@
 #include "host/pe/pe.hpp"
 
+#include "host/image/octant_code.hpp"
+
 namespace gridrt {
 namespace {
 
 using protocol::ErrorCode;
 using protocol::SectionKind;
 
-/// True if the triangle may be met within the voxel: on every axis the ray and the triangle share
-/// a half.
-bool share_halves(HalfMask a, HalfMask b) {
-  const unsigned both = static_cast<unsigned>(a) & b;
-  return (both & 0x03U) != 0 && (both & 0x0CU) != 0 && (both & 0x30U) != 0;
-}
+/// True if the ray and the triangle may meet within the voxel.
+bool share_an_octant(OctantSet a, OctantSet b) { return (a & b) != 0; }
 
 }  // namespace
 
@@ -59,7 +57,7 @@ Accepted<Pe> Pe::decode(const protocol::ImageHeader& header, std::uint8_t number
   for (std::size_t i = 0; i < pe.references_.size(); ++i) {
     const protocol::ReferenceRecord record = reference_codec.at(references, i);
     if (record.triangle >= pe.triangles_.size()) return bad(SectionKind::kReferences);
-    pe.references_[i] = {record.triangle, static_cast<HalfMask>(record.mask)};
+    pe.references_[i] = {record.triangle, octants_of_code(record.octants)};
   }
   return pe;
 }
@@ -71,12 +69,12 @@ std::optional<ExactHit> Pe::intersect(const PeRay& ray, const glm::ivec3& d,
   return intersect_exact(ray.p0, ray.p1, {{e.v0, e.v0 + e.e1, e.v0 + e.e2}});
 }
 
-void Pe::test(const PeRay& ray, std::uint32_t first, std::uint32_t count, HalfMask halves,
+void Pe::test(const PeRay& ray, std::uint32_t first, std::uint32_t count, OctantSet octants,
               HitKey& best, PeCounters& counters, PeObserver* observer) const {
   const glm::ivec3 d = ray.p1 - ray.p0;
   for (const VoxelReference& reference : std::span(references_).subspan(first, count)) {
     const Triangle& triangle = triangles_[reference.triangle];
-    if (!share_halves(reference.mask, halves)) {
+    if (!share_an_octant(reference.octants, octants)) {
       ++counters.masked;
       if (observer != nullptr) observer->on_masked(triangle.id);
       continue;
@@ -93,12 +91,12 @@ void Pe::test(const PeRay& ray, std::uint32_t first, std::uint32_t count, HalfMa
   }
 }
 
-bool Pe::test_any(const PeRay& ray, std::uint32_t first, std::uint32_t count, HalfMask halves,
+bool Pe::test_any(const PeRay& ray, std::uint32_t first, std::uint32_t count, OctantSet octants,
                   PeCounters& counters) const {
   const glm::ivec3 d = ray.p1 - ray.p0;
   for (const VoxelReference& reference : std::span(references_).subspan(first, count)) {
     const Triangle& triangle = triangles_[reference.triangle];
-    if (!share_halves(reference.mask, halves)) {
+    if (!share_an_octant(reference.octants, octants)) {
       ++counters.masked;
       continue;
     }

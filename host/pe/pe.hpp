@@ -55,13 +55,13 @@ class Pe {
     return triangles_[reference.triangle];
   }
 
-  /// Tests the references [first, first + count) whose half-voxel mask meets `halves` and lowers
+  /// Tests the references [first, first + count) that touch one of `octants` and lowers
   /// `best` to the smallest key found. The range lies within references().
-  void test(const PeRay& ray, std::uint32_t first, std::uint32_t count, HalfMask halves,
+  void test(const PeRay& ray, std::uint32_t first, std::uint32_t count, OctantSet octants,
             HitKey& best, PeCounters& counters, PeObserver* observer = nullptr) const;
 
   /// The same, but stops at the first hit; true if there is one.
-  bool test_any(const PeRay& ray, std::uint32_t first, std::uint32_t count, HalfMask halves,
+  bool test_any(const PeRay& ray, std::uint32_t first, std::uint32_t count, OctantSet octants,
                 PeCounters& counters) const;
 
  private:

@@ -19,7 +19,7 @@ module gridrt_engine #(
     parameter int unsigned TRIS = 4096,
     parameter int unsigned VERTS = 2560,
     parameter int unsigned DIVIDERS = 3,  // of a PE
-    parameter bit MASK = 1'b1,  // 0: half-voxel masks are ignored
+    parameter bit MASK = 1'b1,  // 0: octants are ignored
     parameter bit CANCEL = 1'b1,  // 0: hits cancel nothing
     parameter bit FEEDBACK = 1'b1  // 0: the first hit is the answer (a wrong machine, for a test)
 ) (

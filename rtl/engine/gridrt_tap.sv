@@ -46,7 +46,7 @@ module gridrt_tap #(
     tap_o.task_valid = task_valid_i != '0;
     tap_o.task_first = made.first;
     tap_o.task_count = made.count;
-    tap_o.task_halves = made.halves;
+    tap_o.task_octants = made.octants;
     tap_o.task_enter = made.enter;
     tap_o.expand_drop = expand_drop_i != '0;
     for (int unsigned p = 0; p < PES; p++) begin

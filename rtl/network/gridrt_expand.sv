@@ -40,7 +40,6 @@ module gridrt_expand #(
   logic now_valid, go, final_voxel;
   logic [7:0] left, near, from, voxel, below;
   logic [2:0] rank;
-  logic [5:0] halves;
   logic [USED_W-1:0] used;  // voxels chosen and neither dropped nor gone
 
   always_comb begin
@@ -49,10 +48,8 @@ module gridrt_expand #(
     voxel = from & (~from + 8'd1);
     below = now.occ & (voxel - 8'd1);
     rank = '0;
-    halves = '0;
     for (int unsigned v = 0; v < 8; v++) begin
       if (below[v]) rank = rank + 3'd1;
-      if (voxel[v]) halves = halves | now.halves[v];
     end
   end
   assign go = now_valid && used != USED_W'(DEPTH);
@@ -75,12 +72,14 @@ module gridrt_expand #(
     end
   end
 
-  // Asking: the limit decides whether the cell is read.
+  // Asking: the limit decides whether the cell is read; which octants of the voxel the ray touches.
   logic ask_valid, drop;
   logic [SLOT_W-1:0] ask_slot;
   logic [CELL_W-1:0] ask_base;
   logic [2:0] ask_rank;
-  logic [5:0] ask_halves;
+  logic [2:0] ask_voxel;  // x, y, z
+  gridrt_pkg::way_t ask_way;
+  logic [7:0] ask_octants;
   logic [DIST_W-1:0] ask_enter, limit;
 
   gridrt_limits #(
@@ -103,10 +102,16 @@ module gridrt_expand #(
       ask_slot   <= now.slot;
       ask_base   <= now.base;
       ask_rank   <= rank;
-      ask_halves <= halves;
+      ask_voxel  <= {(voxel & 8'hF0) != '0, (voxel & 8'hCC) != '0, (voxel & 8'hAA) != '0};
+      ask_way    <= now.way;
       ask_enter  <= ((voxel & now.front) != '0) ? now.near_enter : now.far_enter;
     end
   end
+  gridrt_octants u_octants (
+      .way_i(ask_way),
+      .voxel_i(ask_voxel),
+      .octants_o(ask_octants)
+  );
   assign drop = ask_valid && ask_enter > limit;
   assign drop_o.valid = drop;
   assign drop_o.slot = ask_slot;
@@ -115,7 +120,7 @@ module gridrt_expand #(
 
   // Waiting for the record.
   logic read1_valid, read2_valid;
-  logic [SLOT_W+6+DIST_W-1:0] read1, read2;
+  logic [SLOT_W+8+DIST_W-1:0] read1, read2;
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
       read1_valid <= 1'b0;
@@ -126,7 +131,7 @@ module gridrt_expand #(
     end
   end
   always_ff @(posedge clk_i) begin
-    if (cell_enable_o) read1 <= {ask_slot, ask_halves, ask_enter};
+    if (cell_enable_o) read1 <= {ask_slot, ask_octants, ask_enter};
     if (read1_valid) read2 <= read1;
   end
 
@@ -135,7 +140,7 @@ module gridrt_expand #(
   logic made_ready;
   logic [USED_W-1:0] made_count;
   always_comb begin
-    {made.slot, made.halves, made.enter} = read2;
+    {made.slot, made.octants, made.enter} = read2;
     {made_pe, made.count, made.first} = cell_i;
     // A list is never empty; a wrong image must not make a task that ends without an answer.
     if (made.count == '0) made.count = LIST_W'(1);

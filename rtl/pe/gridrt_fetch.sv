@@ -1,7 +1,7 @@
-// From tasks to references: reads four references a clock, leaves out those that share no half of
-// the voxel with the ray, and gives the rest one a clock, `last` on the last one of its task. The
-// next task follows without a gap. A task in which nothing passes ends with a pulse of `none` and
-// takes no clock from the others. A task whose ray has been hit before the task's slab is given up.
+// From tasks to references: reads four references a clock, leaves out those that share no octant of
+// the voxel with the ray, and gives the rest one a clock, `last` on the last one of its task. The next
+// task follows without a gap. A task in which nothing passes ends with a pulse of `none` and takes no
+// clock from the others. A task whose ray has been hit before the task's slab is given up.
 // Within a task the order of references is of no account.
 module gridrt_fetch #(
     parameter int unsigned REFS = 10240,
@@ -51,7 +51,7 @@ module gridrt_fetch #(
   logic [SLOT_W-1:0] slot;
   logic [gridrt_pkg::REF_W-1:0] at;
   logic [gridrt_pkg::LIST_W-1:0] left;
-  logic [5:0] halves;
+  logic [7:0] octants;
   logic [gridrt_pkg::DIST_W-1:0] enter;
 
   // The sender has compared the task with the ray's limit as it was before the clock in which the
@@ -89,7 +89,7 @@ module gridrt_fetch #(
       slot <= task_i.slot;
       at <= task_i.first;
       left <= task_i.count;
-      halves <= task_i.halves;
+      octants <= task_i.octants;
       enter <= task_i.enter;
     end else if (go) begin
       at <= at + 14'(WAY);
@@ -103,7 +103,7 @@ module gridrt_fetch #(
   logic [WAY-1:0] wanted, wanted_1, wanted_2, pass, pass_3;
   logic end_1, end_2, end_3;
   logic [SLOT_W-1:0] slot_1, slot_2, slot_3;
-  logic [5:0] halves_1, halves_2;
+  logic [7:0] octants_1, octants_2;
   logic [WAY-1:0][REF_BITS-1:0] found;
   logic [WAY-1:0][TRI_W-1:0] triangle_3;
   logic [gridrt_pkg::REF_W-1:0] even_at, odd_at;
@@ -143,16 +143,16 @@ module gridrt_fetch #(
     );
   end
 
-  function automatic logic share(input logic [5:0] a, input logic [5:0] b);
-    logic [5:0] both;
-    both = a & b;
-    share = !MASK || ((|both[1:0]) && (|both[3:2]) && (|both[5:4]));
+  function automatic logic share(input logic [5:0] code, input logic [7:0] set);
+    logic [7:0] both;
+    both = gridrt_protocol_pkg::OCTANT_SETS[{code, 3'b0}+:8] & set;
+    share = !MASK || both != '0;
   endfunction
 
   always_comb begin
     masked_o = '0;
     for (int unsigned i = 0; i < WAY; i++) begin
-      pass[i] = wanted_2[i] && share(found[i][TRI_W+:6], halves_2);
+      pass[i] = wanted_2[i] && share(found[i][TRI_W+:6], octants_2);
       if (valid_2 && wanted_2[i] && !pass[i]) masked_o = masked_o + 3'd1;
     end
   end
@@ -180,13 +180,13 @@ module gridrt_fetch #(
       wanted_1 <= wanted;
       end_1 <= ends;
       slot_1 <= slot;
-      halves_1 <= halves;
+      octants_1 <= octants;
     end
     if (valid_1) begin
       wanted_2 <= wanted_1;
       end_2 <= end_1;
       slot_2 <= slot_1;
-      halves_2 <= halves_1;
+      octants_2 <= octants_1;
     end
     if (valid_2) begin
       pass_3 <= pass;

@@ -19,8 +19,7 @@ module gridrt_queue #(
     input  logic                     drop_ready_i,
     output logic                     waiting_o      // a task is here
 );
-  localparam int unsigned TASK_W = gridrt_pkg::SLOT_W + gridrt_pkg::REF_W + gridrt_pkg::LIST_W +
-      6 + gridrt_pkg::DIST_W;
+  localparam int unsigned TASK_W = gridrt_pkg::TASK_W;
 
   logic out_valid, cancelled;
   logic [TASK_W-1:0] out_data;

@@ -5,7 +5,7 @@
 //
 //   1  step       27:20 blocks moved ahead  19:12 voxels that become tasks  11:0 block
 //   2  task       25:16 references  15:2 first reference  1:0 PE; a word 3 follows
-//   3  (task)     23:6 entry, lattice steps along the dominant axis  5:0 halves
+//   3  (task)     25:8 entry, lattice steps along the dominant axis  7:0 octants
 //   4  test       14 hit  13:2 triangle's index in the PE's memory  1:0 PE
 //   5  drop       2 cancelled by an earlier hit (0: all references masked or without a hit)  1:0 PE
 //   6  drop       a voxel is cancelled before it becomes a task
@@ -65,20 +65,20 @@ module gridrt_log #(
   assign words[0][31:28] = 4'd1;
 
   gridrt_log_queue #(
-      .WIDTH(50)
+      .WIDTH(52)
   ) u_task (
       .clk_i,
       .rst_ni,
       .push_i(event_valid[TASK]),
-      .data_i({tap_i.task_enter, tap_i.task_halves,
+      .data_i({tap_i.task_enter, tap_i.task_octants,
                   tap_i.task_count, tap_i.task_first, tap_i.task_pe}),
       .lost_o(missed[TASK]),
       .valid_o(valid[TASK]),
-      .data_o({task_more[23:0], words[TASK][25:0]}),
+      .data_o({task_more[25:0], words[TASK][25:0]}),
       .take_i(taken[TASK])
   );
   assign words[TASK][31:26] = {4'd2, 2'd0};
-  assign task_more[31:24] = {4'd3, 4'd0};
+  assign task_more[31:26] = {4'd3, 2'd0};
 
   // How often does what is without data.
   logic [3:0] expand_drops;

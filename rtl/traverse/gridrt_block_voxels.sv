@@ -1,6 +1,5 @@
-// Which voxels of a 2x2x2 block a ray meets, and which halves of them, from the half-voxels in which
-// it is at the five half-slab faces: clocks 5 and 6 of a step. Within a half-slab it meets every half
-// that it has on one lateral axis together with every half on the other, a superset of the truth.
+// Which voxels of a 2x2x2 block a ray meets, and its way through the block's halves, from the
+// half-voxels in which it is at the five half-slab faces: clocks 5 and 6 of a step.
 module gridrt_block_voxels (
     input  logic                clk_i,
     input  logic [1:0]          valid_i,       // of clocks 6 and 5
@@ -12,7 +11,7 @@ module gridrt_block_voxels (
     input  logic [1:0][4:0][2:0] s5_sample_i,  // from the entry block's first half, 0 .. 7
     output logic [3:1]          s6_touched_o,  // neighbours (as s5_sub_i) met in this block-slab
     output logic [7:0]          s7_met_o,      // bits x + 2 y + 4 z, not mirrored
-    output logic [7:0][5:0]     s7_halves_o    // bits 2 axis + half, not mirrored
+    output gridrt_pkg::way_t    s7_way_o
 );
   // Clock 5: halves of this block by half-slab, turned back from mirrored to actual ones. The samples
   // are turned, not what comes of them, which is wider.
@@ -62,50 +61,32 @@ module gridrt_block_voxels (
     end
   end
 
-  // Clock 6: voxels (a, b, c) and their halves, then in the order x, y, z.
+  // Clock 6: voxels (a, b, c), then in the order x, y, z.
   logic [7:0] met;  // a + 2 b + 4 c
-  logic [7:0][5:0] mask;  // a, b, c
   logic [7:0] turned;
-  logic [7:0][5:0] turned_mask;
-  logic hit;
   always_comb begin
     met = '0;
-    mask = '0;
-    hit = 1'b0;
     for (int unsigned v = 0; v < 8; v++) begin
       for (int unsigned j = 0; j < 2; j++) begin
-        hit = s6_holds[2*(v%2)+j] && s6_halves[0][2*(v%2)+j][2*((v/2)%2)+:2] != '0 &&
-              s6_halves[1][2*(v%2)+j][2*(v/4)+:2] != '0;
-        if (hit) begin
+        if (s6_holds[2*(v%2)+j] && s6_halves[0][2*(v%2)+j][2*((v/2)%2)+:2] != '0 &&
+            s6_halves[1][2*(v%2)+j][2*(v/4)+:2] != '0) begin
           met[v] = 1'b1;
-          mask[v][j] = 1'b1;
-          mask[v][3:2] = mask[v][3:2] | s6_halves[0][2*(v%2)+j][2*((v/2)%2)+:2];
-          mask[v][5:4] = mask[v][5:4] | s6_halves[1][2*(v%2)+j][2*(v/4)+:2];
         end
       end
     end
     // v: a voxel by x, y, z. Its bits in the order a, b, c are rotated by the dominant axis.
     for (int unsigned v = 0; v < 8; v++) begin
       case (s6_axis)
-        2'd0: begin
-          turned[v] = met[v];
-          turned_mask[v] = mask[v];
-        end
-        2'd1: begin  // a is y, b is z, c is x
-          turned[v] = met[(v/2)%4+4*(v%2)];
-          turned_mask[v] = {mask[(v/2)%4+4*(v%2)][3:0], mask[(v/2)%4+4*(v%2)][5:4]};
-        end
-        default: begin  // a is z, b is x, c is y
-          turned[v] = met[v/4+2*(v%4)];
-          turned_mask[v] = {mask[v/4+2*(v%4)][1:0], mask[v/4+2*(v%4)][5:2]};
-        end
+        2'd0: turned[v] = met[v];
+        2'd1: turned[v] = met[(v/2)%4+4*(v%2)];  // a is y, b is z, c is x
+        default: turned[v] = met[v/4+2*(v%4)];  // a is z, b is x, c is y
       endcase
     end
   end
   always_ff @(posedge clk_i) begin
     if (valid_i[1]) begin
       s7_met_o <= turned;
-      s7_halves_o <= turned_mask;
+      s7_way_o <= {s6_axis, s6_holds, s6_halves};
     end
   end
 endmodule

@@ -16,7 +16,7 @@ module gridrt_march_out #(
     input  logic [gridrt_pkg::CELL_W-1:0] s7_base_i,        // of the block's cells
     input  logic [7:0]                    s7_occ_i,         // voxels that hold something
     input  logic [7:0]                    s7_met_i,         // voxels that the ray meets
-    input  logic [7:0][5:0]               s7_halves_i,
+    input  gridrt_pkg::way_t              s7_way_i,
     input  logic [gridrt_pkg::DIST_W-1:0] s7_near_enter_i,
     input  logic [gridrt_pkg::DIST_W-1:0] s7_far_enter_i,
     output logic [7:0]                    s7_cand_o,
@@ -26,7 +26,7 @@ module gridrt_march_out #(
     input  logic                          bundle_ready_i,
     output gridrt_pkg::bundle_t           bundle_o
 );
-  localparam int unsigned BUNDLE_W = 127;  // of bundle_t
+  localparam int unsigned BUNDLE_W = gridrt_pkg::BUNDLE_W;
   localparam int unsigned CREDIT_W = $clog2(QUEUE + 1);
 
   if (QUEUE < 1 || QUEUE > 64) begin : gen_illegal
@@ -52,7 +52,7 @@ module gridrt_march_out #(
     bundle.occ = s7_occ_i;
     bundle.cand = s7_cand_o;
     bundle.front = front;
-    bundle.halves = s7_halves_i;
+    bundle.way = s7_way_i;
     bundle.near_enter = s7_near_enter_i;
     bundle.far_enter = s7_far_enter_i;
   end

@@ -233,7 +233,7 @@ module gridrt_traverse #(
   // 5-6: voxels met, and the next neighbour to be looked at.
   logic [3:1] s6_touched;
   logic [7:0] s7_met;
-  logic [7:0][5:0] s7_mask;
+  gridrt_pkg::way_t s7_way;
   logic s6_on, s7_on;  // on: to another block-slab
   gridrt_block_voxels i_voxels (
       .clk_i,
@@ -246,7 +246,7 @@ module gridrt_traverse #(
       .s5_sample_i(s5_sample),
       .s6_touched_o(s6_touched),
       .s7_met_o(s7_met),
-      .s7_halves_o(s7_mask)
+      .s7_way_o(s7_way)
   );
   always_comb begin
     s6_next_sub = 2'd0;
@@ -313,7 +313,7 @@ module gridrt_traverse #(
       .s7_base_i(s7_record[8+:CELL_W]),
       .s7_occ_i(s7_record[7:0]),
       .s7_met_i(s7_met),
-      .s7_halves_i(s7_mask),
+      .s7_way_i(s7_way),
       .s7_near_enter_i(s7_near_enter),
       .s7_far_enter_i(s7_far_enter),
       .s7_cand_o(cand),

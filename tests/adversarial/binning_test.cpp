@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "host/grid/voxel_grid.hpp"
+#include "host/image/octant_code.hpp"
 #include "tests/adversarial/bridge.hpp"
 #include "tests/adversarial/meshes.hpp"
 
@@ -51,17 +52,17 @@ bool meets(const LatticeTriangle& t, const RationalBox& box) {
   return !polygon.empty();
 }
 
-/// The voxel's box, or one half of it along an axis, grown by the margin.
-RationalBox box_of(const VoxelGrid& grid, const glm::ivec3& voxel, int axis, int half) {
+constexpr int kWhole = -1;
+
+/// The voxel's box, or one octant of it (bit a: the upper half of axis a), grown by the margin.
+RationalBox box_of(const VoxelGrid& grid, const glm::ivec3& voxel, int octant) {
   RationalBox box;
   for (int i = 0; i < 3; ++i) {
     const auto k = static_cast<std::size_t>(i);
     box.lo[k] = voxel[i] * grid.edge[i];
     box.hi[k] = box.lo[k] + grid.edge[i];
-    if (i == axis) {
-      const Rational middle = (box.lo[k] + box.hi[k]) / 2;
-      (half == 0 ? box.hi[k] : box.lo[k]) = middle;
-    }
+    const Rational middle = (box.lo[k] + box.hi[k]) / 2;
+    if (octant != kWhole) (((octant >> i) & 1) == 0 ? box.hi[k] : box.lo[k]) = middle;
     box.lo[k] -= grid.margin;
     box.hi[k] += grid.margin;
   }
@@ -100,27 +101,25 @@ void check_scene(const Scene& scene, int bits, const glm::ivec3& wanted, std::si
       for (int x = 0; x < grid.count.x; ++x) {
         const glm::ivec3 voxel{x, y, z};
         const std::size_t cell = grid.index(voxel);
-        std::map<std::uint32_t, HalfMask> found;
+        std::map<std::uint32_t, OctantSet> found;
         for (auto i = lists.first[cell]; i < lists.first[cell + 1]; ++i) {
           const VoxelReference& r = lists.references[i];
           ASSERT_TRUE(i == lists.first[cell] || lists.references[i - 1].triangle < r.triangle);
-          found[r.triangle] = r.mask;
+          found[r.triangle] = octants_of_code(octant_code(r.octants));
           ++references;
         }
         for (std::uint32_t t = 0; t < triangles.size(); ++t) {
           const bool met =
-              near(triangles[t], grid, voxel) && meets(triangles[t], box_of(grid, voxel, -1, 0));
+              near(triangles[t], grid, voxel) && meets(triangles[t], box_of(grid, voxel, kWhole));
           const auto it = found.find(t);
           if (it != found.end() && !met) ++extra;
           if (!met || truth::normal_of(snapped.triangles[t]) == std::array<truth::Wide, 3>{}) {
             continue;
           }
           ASSERT_NE(it, found.end()) << "triangle " << t << " lost in a voxel";
-          for (int axis = 0; axis < 3; ++axis) {
-            for (int half = 0; half < 2; ++half) {
-              if (!meets(triangles[t], box_of(grid, voxel, axis, half))) continue;
-              ASSERT_TRUE((it->second >> (2 * axis + half)) & 1) << "half lost";
-            }
+          for (int octant = 0; octant < 8; ++octant) {
+            if (!meets(triangles[t], box_of(grid, voxel, octant))) continue;
+            ASSERT_TRUE((it->second >> octant) & 1) << "octant lost";
           }
         }
       }
@@ -128,7 +127,7 @@ void check_scene(const Scene& scene, int bits, const glm::ivec3& wanted, std::si
   }
 }
 
-TEST(Binning, LosesNoVoxelAndNoHalf) {
+TEST(Binning, LosesNoVoxelAndNoOctant) {
   Random random(50);
   std::size_t references = 0;
   std::size_t extra = 0;

@@ -1,13 +1,12 @@
 // Case 24: the voxels visited are those that the segment meets, by exact arithmetic of another
 // kind (separating axes), and their order and parameters are right (clipping in rationals).
-#include "host/grid/traversal.hpp"
-
 #include <algorithm>
 #include <cstdio>
 #include <set>
 
 #include <gtest/gtest.h>
 
+#include "host/grid/octants.hpp"
 #include "tests/adversarial/bridge.hpp"
 #include "tests/adversarial/meshes.hpp"
 #include "tests/adversarial/rays.hpp"
@@ -18,16 +17,21 @@ namespace {
 
 using truth::Rational;
 
-/// The part of [0, 1] within the voxel's closed box, by clipping in rationals; empty: first > last.
+constexpr int kWhole = -1;
+
+/// The part of [0, 1] within the voxel's closed box, or within an octant of it (bit a: the upper
+/// half of axis a), by clipping in rationals; empty: first > last.
 struct Part {
   Rational first = 0;
   Rational last = 1;
 };
-Part clip(const VoxelGrid& grid, const glm::ivec3& voxel, const Segment& s) {
+Part clip(const VoxelGrid& grid, const glm::ivec3& voxel, const Segment& s, int octant = kWhole) {
   Part part;
   for (int i = 0; i < 3; ++i) {
-    const Rational low = voxel[i] * grid.edge[i] - s.p0[i];
-    const Rational high = low + grid.edge[i];
+    Rational low = voxel[i] * grid.edge[i] - s.p0[i];
+    Rational high = low + grid.edge[i];
+    const Rational middle = (low + high) / 2;
+    if (octant != kWhole) (((octant >> i) & 1) == 0 ? high : low) = middle;
     const Rational d = s.p1[i] - s.p0[i];
     if (d == 0) {
       if (low > 0 || high < 0) return {1, 0};
@@ -153,7 +157,7 @@ TEST(Case24, VisitedVoxelsAreExactlyThoseMet) {
   std::printf("case 24: %zu rays, %zu voxels visited, exactly those met\n", rays, voxels);
 }
 
-TEST(Case24, ParametersAndHalvesAreThoseOfRationalClipping) {
+TEST(Case24, ParametersAndOctantsAreThoseOfRationalClipping) {
   Random random(25);
   std::size_t rays = 0;
   for (int round = 0; round < 60; ++round) {
@@ -171,15 +175,10 @@ TEST(Case24, ParametersAndHalvesAreThoseOfRationalClipping) {
         EXPECT_EQ(Rational(v.leave.num) / v.leave.den, part.last);
         EXPECT_EQ(v.enter.quotient(),
                   truth::floor_of(truth::power_of_two(24) * part.first).get_ui());
-        // The halves must hold every half that the part touches.
-        const HalfMask halves = ray_halves(f.grid, s.p0, s.p1, v);
-        for (int a = 0; a < 3; ++a) {
-          const Rational d = s.p1[a] - s.p0[a];
-          const Rational x0 = s.p0[a] + part.first * d;
-          const Rational x1 = s.p0[a] + part.last * d;
-          const Rational middle = (v.voxel[a] + Rational(1, 2)) * f.grid.edge[a];
-          EXPECT_EQ(((halves >> (2 * a)) & 1U) != 0, std::min(x0, x1) <= middle);
-          EXPECT_EQ(((halves >> (2 * a + 1)) & 1U) != 0, std::max(x0, x1) >= middle);
+        const OctantSet octants = ray_octants(f.grid, s.p0, s.p1, v);
+        for (int octant = 0; octant < 8; ++octant) {
+          const Part in = clip(f.grid, v.voxel, s, octant);
+          EXPECT_EQ(((octants >> octant) & 1U) != 0, in.first <= in.last);
         }
         return true;
       });
@@ -194,7 +193,7 @@ TEST(Case24, ParametersAndHalvesAreThoseOfRationalClipping) {
       if (HasFailure()) return;
     }
   }
-  std::printf("case 24: %zu rays, parameters and halves equal rational clipping\n", rays);
+  std::printf("case 24: %zu rays, parameters and octants equal rational clipping\n", rays);
 }
 
 }  // namespace

@@ -139,11 +139,11 @@ struct Block {
 
 /// What a step finds: all voxels of the block that the ray meets, and those that are occupied.
 struct Step {
-  int block = 0;                     ///< address of the block looked at
-  unsigned met = 0;                  ///< bits x + 2 y + 4 z, not mirrored
-  unsigned cand = 0;                 ///< met and occupied
-  unsigned front = 0;                ///< those in the slab entered first
-  std::array<unsigned, 8> halves{};  ///< bits 2 axis + half, not mirrored, of those met
+  int block = 0;                      ///< address of the block looked at
+  unsigned met = 0;                   ///< bits x + 2 y + 4 z, not mirrored
+  unsigned cand = 0;                  ///< met and occupied
+  unsigned front = 0;                 ///< those in the slab entered first
+  std::array<unsigned, 8> octants{};  ///< bits x + 2 y + 4 z, not mirrored, of those met
   int base = 0;
   unsigned occ = 0;
   int near_enter = 0;
@@ -209,15 +209,15 @@ Step step(const Grid& g, State& s, std::int64_t limit, Memory&& memory) {
         half[a] = i;
         half[axes[0]] = hb;
         half[axes[1]] = hc;
-        unsigned mask = 0;
+        unsigned octant = 0;
         unsigned bit = 0;
         for (int k = 0; k < 3; ++k) {
           const int actual = s.neg[static_cast<std::size_t>(k)] ? 3 - half[k] : half[k];
-          mask |= 1U << (2 * k + (actual & 1));
+          octant |= static_cast<unsigned>(actual & 1) << k;
           bit |= static_cast<unsigned>(actual >> 1) << k;
         }
         out.met |= 1U << bit;
-        out.halves[bit] |= mask;
+        out.octants[bit] |= 1U << octant;
         if (i < 2) out.front |= 1U << bit;
       }
     }

@@ -89,31 +89,4 @@ State get_state(const Wide& wide) {
   return s;
 }
 
-/// Fields of bundle_t.
-struct Bundle {
-  int slot = 0;
-  int base = 0;
-  unsigned occ = 0;
-  unsigned cand = 0;
-  unsigned front = 0;
-  std::array<unsigned, 8> halves{};
-  int near_enter = 0;
-  int far_enter = 0;
-};
-
-template <class Wide>
-Bundle get_bundle(const Wide& wide) {
-  Get<Wide> get(wide);
-  Bundle b;
-  b.far_enter = static_cast<int>(get(18));
-  b.near_enter = static_cast<int>(get(18));
-  for (unsigned& h : b.halves) h = static_cast<unsigned>(get(6));
-  b.front = static_cast<unsigned>(get(8));
-  b.cand = static_cast<unsigned>(get(8));
-  b.occ = static_cast<unsigned>(get(8));
-  b.base = static_cast<int>(get(13));
-  b.slot = static_cast<int>(get(6));
-  return b;
-}
-
 }  // namespace gridrt::march

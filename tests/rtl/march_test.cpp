@@ -18,7 +18,7 @@ constexpr std::int64_t kNoLimit = std::int64_t{1} << 40;
 
 struct Visit {
   glm::ivec3 voxel{0};
-  unsigned halves = 0;
+  unsigned octants = 0;
   int enter = 0;
 };
 
@@ -44,7 +44,7 @@ std::vector<Visit> visits_of(const Grid& g, const Segment& segment) {
     for (int bit = 0; bit < 8; ++bit) {
       if (((step.cand >> bit) & 1U) == 0) continue;
       const bool front = ((step.front >> bit) & 1U) != 0;
-      visits.push_back({voxel_of(g, step.block, bit), step.halves[static_cast<std::size_t>(bit)],
+      visits.push_back({voxel_of(g, step.block, bit), step.octants[static_cast<std::size_t>(bit)],
                         front ? step.near_enter : step.far_enter});
     }
     done = step.done;
@@ -70,54 +70,57 @@ class Exact {
   std::int64_t length_;
 };
 
-/// True if some half of the visit, grown by one lattice step sideways, holds the point.
-bool holds(const Grid& g, const Visit& v, const Exact& exact, int axis, std::int64_t n) {
-  for (int a = 0; a < 3; ++a) {
-    bool here = false;
-    const std::int64_t margin = a == axis ? 0 : 2 * exact.scale();
-    for (int half = 0; half < 2; ++half) {
-      if (((v.halves >> (2 * a + half)) & 1U) == 0) continue;
-      const std::int64_t lo = std::int64_t{2 * v.voxel[a] + half} * g.edge[a] * exact.scale();
-      const std::int64_t hi = lo + g.edge[a] * exact.scale();
-      const std::int64_t x = 2 * exact.at(a, n);
-      here = here || (x >= lo - margin && x <= hi + margin);
-    }
-    if (!here) return false;
-  }
-  return true;
+/// Half-voxel `half` of the visit on an axis, in the scale of 2 exact.at().
+struct Half {
+  std::int64_t lo = 0;
+  std::int64_t hi = 0;
+};
+Half half_of(const Grid& g, const Visit& v, const Exact& exact, int a, unsigned octant) {
+  const int half = static_cast<int>((octant >> a) & 1U);
+  const std::int64_t lo = std::int64_t{2 * v.voxel[a] + half} * g.edge[a] * exact.scale();
+  return {lo, lo + g.edge[a] * exact.scale()};
 }
 
-/// True if on each axis every half of the visit, grown by a 64th of a voxel or one step, is met by
-/// the part of the segment that lies in the visit's half-slabs.
-bool tight(const Grid& g, const Visit& v, const Segment& s, const Exact& exact, int axis) {
-  std::int64_t from = 2 * exact.length();
-  std::int64_t to = 0;
-  const bool up = s.p1[axis] > s.p0[axis];
-  for (int half = 0; half < 2; ++half) {
-    if (((v.halves >> (2 * axis + half)) & 1U) == 0) continue;
-    const std::int64_t lo = std::int64_t{2 * v.voxel[axis] + half} * g.edge[axis];
-    const std::int64_t hi = lo + g.edge[axis];
-    const std::int64_t p = 2 * std::int64_t{s.p0[axis]};
-    from = std::min(from, up ? lo - p : p - hi);
-    to = std::max(to, up ? hi - p : p - lo);
+/// True if some octant of the visit, grown by one lattice step sideways, holds the point.
+bool holds(const Grid& g, const Visit& v, const Exact& exact, int axis, std::int64_t n) {
+  for (unsigned octant = 0; octant < 8; ++octant) {
+    bool here = ((v.octants >> octant) & 1U) != 0;
+    for (int a = 0; a < 3; ++a) {
+      const std::int64_t margin = a == axis ? 0 : 2 * exact.scale();
+      const Half half = half_of(g, v, exact, a, octant);
+      const std::int64_t x = 2 * exact.at(a, n);
+      here = here && x >= half.lo - margin && x <= half.hi + margin;
+    }
+    if (here) return true;
   }
-  from = std::max<std::int64_t>(from, 0);
-  to = std::min(to, 2 * exact.length());
-  if (from > to) return false;
-  for (int a = 0; a < 3; ++a) {
-    if (a == axis) continue;
-    const std::int64_t x0 = exact.at(a, from);
-    const std::int64_t x1 = exact.at(a, to);
-    for (int half = 0; half < 2; ++half) {
-      if (((v.halves >> (2 * a + half)) & 1U) == 0) continue;
+  return false;
+}
+
+/// True if on each axis every octant of the visit, grown by a 64th of a voxel or one step, is met
+/// by the part of the segment that lies in the octant's half-slab.
+bool tight(const Grid& g, const Visit& v, const Segment& s, const Exact& exact, int axis) {
+  const bool up = s.p1[axis] > s.p0[axis];
+  for (unsigned octant = 0; octant < 8; ++octant) {
+    if (((v.octants >> octant) & 1U) == 0) continue;
+    const int half_slab = 2 * v.voxel[axis] + static_cast<int>((octant >> axis) & 1U);
+    const std::int64_t low = std::int64_t{half_slab} * g.edge[axis];
+    const std::int64_t high = low + g.edge[axis];
+    const std::int64_t p = 2 * std::int64_t{s.p0[axis]};
+    const std::int64_t from = std::max<std::int64_t>(up ? low - p : p - high, 0);
+    const std::int64_t to = std::min(up ? high - p : p - low, 2 * exact.length());
+    if (from > to) return false;
+    for (int a = 0; a < 3; ++a) {
+      if (a == axis) continue;
+      const std::int64_t x0 = exact.at(a, from);
+      const std::int64_t x1 = exact.at(a, to);
       const std::int64_t grow =
           std::max(128 * exact.scale(), 2 * g.edge[a] * exact.scale());  // 1/128
-      const std::int64_t lo = 64 * std::int64_t{2 * v.voxel[a] + half} * g.edge[a] * exact.scale();
-      const std::int64_t hi = lo + 64 * g.edge[a] * exact.scale();
-      if (128 * std::max(x0, x1) < lo - grow || 128 * std::min(x0, x1) > hi + grow) return false;
+      const Half half = half_of(g, v, exact, a, octant);
+      if (128 * std::max(x0, x1) < 64 * half.lo - grow) return false;
+      if (128 * std::min(x0, x1) > 64 * half.hi + grow) return false;
     }
   }
-  return true;
+  return v.octants != 0;
 }
 
 void check(const Case& c, const Segment& s, Random& random) {
@@ -198,7 +201,7 @@ std::vector<Block> random_blocks(Random& random, const Grid& g, double density) 
   return blocks;
 }
 
-/// Voxels dispatched, with their halves and entries; `plain`: without jumps.
+/// Voxels dispatched, with their octants and entries; `plain`: without jumps.
 Found dispatched(const Grid& g, const Segment& s, const std::vector<Block>& blocks, bool plain,
                  int& steps) {
   Found found;
@@ -212,9 +215,9 @@ Found dispatched(const Grid& g, const Segment& s, const std::vector<Block>& bloc
     for (int bit = 0; bit < 8; ++bit) {
       if (((step.cand >> bit) & 1U) == 0) continue;
       const bool front = ((step.front >> bit) & 1U) != 0;
-      found.insert(
-          {{step.block, bit},
-           {step.halves[static_cast<std::size_t>(bit)], front ? step.near_enter : step.far_enter}});
+      found.insert({{step.block, bit},
+                    {step.octants[static_cast<std::size_t>(bit)],
+                     front ? step.near_enter : step.far_enter}});
     }
     done = step.done;
   }

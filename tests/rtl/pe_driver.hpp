@@ -34,7 +34,7 @@ struct PeTraffic {
   int interrupts = 0;     ///< per thousand clocks, at random
   bool feedback = false;  ///< each hit sends its limit back, as the engine does
   int list = 12;          ///< references of a task: 1 to this
-  int whole = 33;         ///< percent of tasks whose ray touches all halves of the voxel
+  int whole = 33;         ///< percent of tasks whose ray touches all of the voxel
   int near = 30;          ///< tasks enter at 0 to this, or anywhere for 0
 };
 
@@ -84,7 +84,7 @@ class PeDriver : public testing::Test {
     }
     for (std::size_t i = 0; i < image_->references.size(); ++i) {
       const Reference& r = image_->references[i];
-      write(3, i, r.triangle | (r.mask << 12U));
+      write(3, i, r.triangle | (r.octants << 12U));
     }
     for (int i = 0; i < 3; ++i) pe_->load_i[static_cast<std::size_t>(i)] = 0;
     pe_.settle();
@@ -191,7 +191,9 @@ class PeDriver : public testing::Test {
     t.count = 1 + static_cast<int>(random_() % static_cast<unsigned>(traffic.list));
     t.first =
         static_cast<int>(random_() % static_cast<unsigned>(kPeSizes.references - t.count + 1));
-    t.halves = percent(traffic.whole) ? 63U : random_() % 64;
+    t.octants = 255;
+    if (!percent(traffic.whole))
+      t.octants = 1U << random_() % 8 | (random_() & random_() & random_() & 255U);
     const unsigned most = traffic.near > 0 ? static_cast<unsigned>(traffic.near) : length;
     t.enter = random_() % (most + 1);
     return t;

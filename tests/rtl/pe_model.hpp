@@ -7,6 +7,7 @@
 #include <random>
 #include <vector>
 
+#include "gridrt_protocol.hpp"
 #include "tests/rtl/exact_test.hpp"
 #include "tests/rtl/pe_ports.hpp"
 
@@ -23,7 +24,7 @@ class Random {
 
 struct Reference {
   std::uint32_t triangle = 0;
-  unsigned mask = 63;
+  unsigned octants = 63;  ///< code, as in protocol.toml
 };
 
 struct StoredTriangle {
@@ -39,12 +40,6 @@ struct PeRay {
   bool any = false;
 };
 
-/// True if on every axis the two share a half of the voxel.
-constexpr bool share_halves(unsigned a, unsigned b) {
-  const unsigned both = a & b;
-  return (both & 3U) != 0 && (both & 12U) != 0 && (both & 48U) != 0;
-}
-
 struct PeSizes {
   int references = 0;
   int triangles = 0;
@@ -52,7 +47,7 @@ struct PeSizes {
 };
 
 /// Random memories of a PE; `size` is the edge of the cube in which everything lies: the smaller,
-/// the more degenerate tests. `sparse` is how many references of ten have a small mask.
+/// the more degenerate tests. `sparse` is how many references of ten touch some octants only.
 class PeImage {
  public:
   PeImage(int bits, const PeSizes& sizes, std::int64_t size, unsigned sparse, Random& random)
@@ -67,8 +62,9 @@ class PeImage {
       triangles.push_back(t);
     }
     for (int i = 0; i < sizes.references; ++i) {
-      const unsigned mask = random() % 10 < sparse ? random() % 64 : 63U;
-      references.push_back({random() % static_cast<unsigned>(sizes.triangles), mask});
+      const unsigned octants =
+          random() % 10 < sparse ? random() % (random() % 2 == 0 ? 8U : 64U) : 63U;
+      references.push_back({random() % static_cast<unsigned>(sizes.triangles), octants});
     }
   }
 
@@ -133,7 +129,7 @@ inline std::vector<PeTest> tests_of(const PeImage& image, const PeRay& ray, cons
   for (const int i : order_of(task)) {
     const Reference& r =
         image.references[static_cast<std::size_t>(task.first) + static_cast<std::size_t>(i)];
-    if (!share_halves(r.mask, task.halves)) continue;
+    if ((protocol::kOctantSets[r.octants] & task.octants) == 0) continue;
     const Verdict verdict = judge(ray.p0, ray.p1, image.corners(r.triangle));
     PeTest test{r.triangle, verdict.hit, {}};
     const std::uint32_t id = image.triangles[r.triangle].id;

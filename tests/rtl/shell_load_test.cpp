@@ -179,7 +179,7 @@ TEST(ShellLoad, HeadersThatAreNotValidAreRefused) {
   using Header = protocol::ImageHeader;
   const auto header = [](auto&& set) { return refused([&](Image& image) { set(image.header); }); };
   EXPECT_REFUSED(header([](Header& h) { h.magic ^= 1; }), kBadHeader, 0);
-  EXPECT_REFUSED(header([](Header& h) { h.version = 2; }), kBadHeader, 4);
+  EXPECT_REFUSED(header([](Header& h) { ++h.version; }), kBadHeader, 4);
   EXPECT_REFUSED(header([](Header& h) { h.layout = 2; }), kBadHeader, 6);
   EXPECT_REFUSED(header([](Header& h) { h.pes = 0; }), kBadHeader, 7);
   EXPECT_REFUSED(header([](Header& h) { h.pes = GRIDRT_RTL_PES + 1; }), kBadHeader, 7);

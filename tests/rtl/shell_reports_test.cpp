@@ -162,15 +162,15 @@ TEST(ShellReports, TheLogTellsWhatTheTapTold) {
   EXPECT_EQ(bench.read(kControl + 4), 1U);
   EXPECT_TRUE(read_log(bench, overflow).empty());
   // A step, a task and a test of PE 2 in one clock, then a hit, an interrupt and the commit.
-  put(bench, 231, 1, 1);
-  put(bench, 219, 12, 0xABC);  // block
-  put(bench, 211, 8, 0x81);    // voxels
-  put(bench, 203, 8, 7);       // jump
-  put(bench, 202, 1, 1);
-  put(bench, 200, 2, 3);         // PE
-  put(bench, 186, 14, 0x2345);   // first
-  put(bench, 176, 10, 0x155);    // count
-  put(bench, 170, 6, 0x2A);      // halves
+  put(bench, 233, 1, 1);
+  put(bench, 221, 12, 0xABC);  // block
+  put(bench, 213, 8, 0x81);    // voxels
+  put(bench, 205, 8, 7);       // jump
+  put(bench, 204, 1, 1);
+  put(bench, 202, 2, 3);         // PE
+  put(bench, 188, 14, 0x2345);   // first
+  put(bench, 178, 10, 0x155);    // count
+  put(bench, 170, 8, 0xAA);      // octants
   put(bench, 152, 18, 0x31234);  // entry
   put(bench, 149, 1, 1);         // test_valid of PE 2
   put(bench, 99 + 24, 12, 0x777);
@@ -195,7 +195,7 @@ TEST(ShellReports, TheLogTellsWhatTheTapTold) {
   bench.run(20);
   const std::vector<std::uint32_t> expected{0x1'07'81'ABC,
                                             0x20000000U | 0x155U << 16U | 0x2345U << 2U | 3U,
-                                            0x30000000U | 0x31234U << 6U | 0x2AU,
+                                            0x30000000U | 0x31234U << 8U | 0xAAU,
                                             0x40000000U | 1U << 14U | 0x777U << 2U | 2U,
                                             0x50000000U | 1U,
                                             0x50000000U | 4U | 3U,
@@ -209,9 +209,9 @@ TEST(ShellReports, TheLogTellsWhatTheTapTold) {
   EXPECT_EQ(words, expected);
   EXPECT_FALSE(overflow);
   // More than fits: what is there is in order, and the loss is told.
-  put(bench, 231, 1, 1);
+  put(bench, 233, 1, 1);
   for (unsigned i = 0; i < 600; ++i) {
-    put(bench, 219, 12, i);
+    put(bench, 221, 12, i);
     bench.tick();
   }
   bench.tap = {};

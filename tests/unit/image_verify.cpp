@@ -102,8 +102,9 @@ std::vector<Corruption> record_corruptions(const Image& image) {
       cell("an owner that is not there", [](auto& r) { r.pe = 3; }),
       reference("another triangle", [](auto& r) { r.triangle ^= 1; }),
       reference("a triangle that is not there", [](auto& r) { r.triangle = 4000; }),
-      reference("a half hidden", [](auto& r) { r.mask &= r.mask - 1; }),
-      reference("a half shown", [](auto& r) { r.mask = r.mask == 0x3F ? 0x1F : 0x3F; }),
+      reference("an octant hidden", [](auto& r) { r.octants = r.octants == 0 ? 1 : 0; }),
+      reference("octants shown", [](auto& r) { r.octants = r.octants == 58 ? 57 : 58; }),
+      reference("another code of the same set", [](auto& r) { r.octants = 63; }),
       triangle(
           "a vertex that is not there", [](auto& r) { r.vertex[1] = 4000; }, in_triangles),
       triangle(
