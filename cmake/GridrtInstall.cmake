@@ -13,7 +13,7 @@ list(REMOVE_ITEM libraries gridrt_app)
 install(TARGETS ${libraries} gridrt EXPORT GridRTTargets)
 install(EXPORT GridRTTargets NAMESPACE GridRT::
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/GridRT)
-install(TARGETS gridrt-host gridrt-image)
+install(TARGETS gridrt-host gridrt-image gridrt-board)
 if(GRIDRT_BUILD_MPI)
   install(TARGETS gridrt-rank)
 endif()
@@ -46,4 +46,7 @@ install(FILES ${PROJECT_BINARY_DIR}/GridRTConfig.cmake
               ${PROJECT_BINARY_DIR}/GridRTConfigVersion.cmake cmake/FindGMP.cmake cmake/FindHighway.cmake
               cmake/FindHIDAPI.cmake cmake/FindLibUSB.cmake
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/GridRT)
+if(GRIDRT_BUILD_USB)
+  install(FILES ${PROJECT_BINARY_DIR}/generated/70-gridrt.rules DESTINATION lib/udev/rules.d)
+endif()
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})

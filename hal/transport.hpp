@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "gridrt_protocol.hpp"
@@ -37,6 +38,14 @@ class Transport {
   /// Writes a feature report, `body` being the bytes behind its id. Errors: as get_feature, and
   /// kProtocol if the device refuses the content.
   virtual Result<void> set_feature(std::uint8_t id, std::span<const std::byte> body) = 0;
+
+  /// Waits for a report that the device sends by itself: returns its id and writes the bytes behind
+  /// it to `body`, or returns nothing after the timeout. Errors: kTransport, and kUnsupported for
+  /// links without such reports, which is what this one says.
+  virtual Result<std::optional<std::uint8_t>> read_input(std::span<std::byte> /*body*/,
+                                                         std::chrono::milliseconds /*timeout*/) {
+    return fail(ErrorKind::kUnsupported, "this link has no reports that come by themselves");
+  }
 };
 
 /// Reads a report as its struct, as in get_report<protocol::StatusReport>(transport).

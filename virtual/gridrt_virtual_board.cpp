@@ -16,6 +16,7 @@
 #include "virtual/listen.hpp"
 #include "virtual/redirection.hpp"
 #include "virtual/usb_function.hpp"
+#include "virtual/usbip.hpp"
 
 namespace gridrt {
 namespace {
@@ -26,23 +27,26 @@ struct Options {
   VirtualBoardOptions board;
   std::string flash;
   std::string redirect;
+  std::string usbip;
   bool full_speed = false;
   bool once = false;
 };
 
-Result<void> serve_redirection(UsbFunction& function, const Options& options) {
+/// Serves one connection after the other with a Bus: Redirection or UsbIp.
+template <class Bus>
+Result<void> serve(UsbFunction& function, const std::string& place, const Options& options) {
   constexpr std::chrono::milliseconds kPatience(1000);
-  Result<Socket> listening = listen_at(options.redirect);
+  Result<Socket> listening = listen_at(place);
   if (!listening) return std::unexpected(std::move(listening.error()));
-  fmt::print("{}: waiting at {}\n", kProgram, options.redirect);
+  fmt::print("{}: waiting at {}\n", kProgram, place);
   std::fflush(stdout);
   for (;;) {
     Result<Socket> socket = accept_one(*listening, kPatience);
     if (!socket) return std::unexpected(std::move(socket.error()));
     if (!socket->is_open()) continue;
-    Redirection redirection(function, socket->file());
+    Bus bus(function, socket->file());
     Result<bool> going = true;
-    while (going && *going) going = redirection.step(kPatience);
+    while (going && *going) going = bus.step(kPatience);
     if (!going) return std::unexpected(std::move(going.error()));
     if (options.once) return {};
   }
@@ -61,21 +65,25 @@ Result<void> run(Options options) {
   UsbFunction function(*board->endpoint, {.serial = options.board.serial,
                                           .high_speed = !options.full_speed,
                                           .input = board->input});
-  return serve_redirection(function, options);
+  return options.usbip.empty() ? serve<Redirection>(function, options.redirect, options)
+                               : serve<UsbIp>(function, options.usbip, options);
 }
 
 int main_of(int argc, const char* const* argv) {
   Options options;
-  CLI::App app("A GridRT board without hardware, for USB redirection (QEMU, SPICE).",
+  CLI::App app("A GridRT board without hardware, to plug into this computer or a virtual one.",
                std::string(kProgram));
   app.add_option("--core", options.board.core, "seq, omp (software PEs; default) or sim (the RTL)");
   app.add_flag("--wide", options.board.wide, "software PEs without the board's limits");
   app.add_option("--serial", options.board.serial, "at most 16 characters (default: virtual-1)");
   app.add_option("--flash", options.flash, "a flash image to boot from");
   app.add_flag("--full-speed", options.full_speed, "12 Mbit/s instead of 480");
-  app.add_option("--redirect", options.redirect,
-                 "serve USB redirection at this path or TCP port of this machine")
-      ->required();
+  auto* bus = app.add_option_group("bus", "How it is plugged in");
+  bus->add_option("--redirect", options.redirect,
+                  "USB redirection (QEMU, SPICE) at this path or TCP port of this machine");
+  bus->add_option("--usbip", options.usbip,
+                  "USB/IP at this path or TCP port of this machine (3240 is the usual one)");
+  bus->require_option(1);
   app.add_flag("--once", options.once, "end with the first connection");
   try {
     app.parse(argc, argv);

@@ -3,7 +3,7 @@
 usage: generate.py protocol.toml OUTPUT_DIRECTORY
 
 Writes gridrt_protocol.hpp, gridrt_firmware_protocol.hpp, gridrt_protocol_pkg.sv and protocol.md,
-and of the USB device gridrt_usb.hpp, gridrt_usb_pkg.sv and gridrt_usb.py. The output depends on the
+and of the USB device gridrt_usb.hpp, gridrt_usb_pkg.sv, gridrt_usb.py and 70-gridrt.rules. The output depends on the
 source alone. A mistake in the source ends the run with status 1 and nothing written.
 """
 
@@ -16,7 +16,7 @@ from firmware import firmware_header
 from model import SourceError
 from source import read_protocol
 from systemverilog import sv_package
-from usb_output import usb_document, usb_header, usb_module, usb_package
+from usb_output import udev_rule, usb_document, usb_header, usb_module, usb_package
 
 
 def main(arguments: list[str]) -> int:
@@ -33,6 +33,7 @@ def main(arguments: list[str]) -> int:
             "gridrt_usb.hpp": usb_header(protocol),
             "gridrt_usb_pkg.sv": usb_package(protocol),
             "gridrt_usb.py": usb_module(protocol),
+            "70-gridrt.rules": udev_rule(protocol),
         }
     except SourceError as error:
         print(f"generate.py: {error}", file=sys.stderr)

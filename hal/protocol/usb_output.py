@@ -48,6 +48,17 @@ def usb_module(protocol: Protocol) -> str:
     return "".join(out)
 
 
+def udev_rule(protocol: Protocol) -> str:
+    """Lets whoever sits at the computer use the board (systemd's uaccess, which needs a number
+    below 73)."""
+    ids = [f'ATTR{{s}}{{{name}}}=="{protocol.usb[key]:04x}"'
+           for name, key in (("idVendor", "vendor_id"), ("idProduct", "product_id"))]
+    node, parent = (", ".join(i.replace("{s}", s) for i in ids) for s in ("", "S"))
+    return (f"# The GridRT board: its bulk pipes, and its reports.\n# {NOTE}\n"
+            f'SUBSYSTEM=="usb", ENV{{DEVTYPE}}=="usb_device", {node}, TAG+="uaccess"\n'
+            f'SUBSYSTEM=="hidraw", KERNEL=="hidraw*", {parent}, TAG+="uaccess"\n')
+
+
 def usb_document(protocol: Protocol) -> str:
     numbers = [[f"`{n.name}`", f"{n.value:#x}", n.doc] for n in protocol.usb.numbers]
     kinds = [[r.report_id, r.name, ", ".join(r.report_kinds)] for r in protocol.reports]

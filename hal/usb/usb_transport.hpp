@@ -27,13 +27,11 @@ class UsbTransport final : public Transport {
   Result<void> get_feature(std::uint8_t id, std::span<std::byte> body) override;
   Result<void> set_feature(std::uint8_t id, std::span<const std::byte> body) override;
 
+  Result<std::optional<std::uint8_t>> read_input(std::span<std::byte> body,
+                                                 std::chrono::milliseconds timeout) override;
+
   /// Waits until the board has taken all that was sent. Errors: as send().
   Result<void> flush();
-
-  /// Waits for a report that the board sends by itself (its interrupt endpoint): returns its id and
-  /// fills `body`, or returns nothing after the timeout. Errors: kTransport.
-  Result<std::optional<std::uint8_t>> read_input(std::span<std::byte> body,
-                                                 std::chrono::milliseconds timeout);
 
   /// Sends a report on the interrupt endpoint. Errors: as set_feature().
   Result<void> write_output(std::uint8_t id, std::span<const std::byte> body);

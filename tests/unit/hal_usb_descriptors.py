@@ -21,13 +21,14 @@ with open(PROTOCOL / "protocol.toml", "rb") as file:
 
 
 def generated():
-    """The Python module that LUNA's side reads."""
+    """The Python module that LUNA's side reads, with the udev rule as RULE."""
     with tempfile.TemporaryDirectory() as folder:
         subprocess.run([sys.executable, "-B", str(PROTOCOL / "generate.py"),
                         str(PROTOCOL / "protocol.toml"), folder], check=True)
         spec = importlib.util.spec_from_file_location("gridrt_usb", Path(folder) / "gridrt_usb.py")
         module = importlib.util.module_from_spec(spec)
         spec.loader.exec_module(module)
+        module.RULE = (Path(folder) / "70-gridrt.rules").read_text(encoding="utf-8")
         return module
 
 
@@ -104,6 +105,14 @@ class Descriptors(unittest.TestCase):
         value = data[54 + name + 2:]
         self.assertEqual(len(value), struct.unpack_from("<H", data, 54 + name)[0])
         self.assertEqual(value.decode("utf-16-le"), USB.INTERFACE_GUID_TEXT + "\0\0")
+
+    def test_the_udev_rule_names_the_device(self):
+        lines = [line for line in USB.RULE.splitlines() if not line.startswith("#")]
+        self.assertEqual(lines, [
+            'SUBSYSTEM=="usb", ENV{DEVTYPE}=="usb_device", ATTR{idVendor}=="1209", '
+            'ATTR{idProduct}=="0001", TAG+="uaccess"',
+            'SUBSYSTEM=="hidraw", KERNEL=="hidraw*", ATTRS{idVendor}=="1209", '
+            'ATTRS{idProduct}=="0001", TAG+="uaccess"'])
 
     def test_strings(self):
         self.assertEqual(USB.PRODUCT_DESCRIPTOR[:2], bytes([len(USB.PRODUCT_DESCRIPTOR), 3]))

@@ -82,7 +82,7 @@ class Guest:
 
     def initramfs(self, script):
         root = self.path / "root"
-        for name in ("bin", "lib", "lib64", "modules", "programs", "proc", "sys", "dev", "tmp"):
+        for name in ("bin", "etc", "lib", "lib64", "modules", "programs", "proc", "sys", "dev", "tmp"):
             (root / name).mkdir(parents=True, exist_ok=True)
         shutil.copy(self.busybox, root / "bin" / "busybox")
         for module in MODULES:
@@ -96,6 +96,8 @@ class Guest:
             # The loader is named by its path in every program, the others are looked for in /lib.
             place = "lib64" if library.name.startswith("ld-linux") else "lib"
             shutil.copy(library.resolve(), root / place / library.name)
+        (root / "etc" / "passwd").write_text("root:x:0:0::/:/bin/sh\nnobody:x:65534:65534::/:/bin/sh\n",
+                                             encoding="ascii")
         for name, content in self.files.items():
             (root / name).write_bytes(content)
         (root / "init").write_text(INIT.format(modules=" ".join(MODULES)), encoding="utf-8")

@@ -1,6 +1,8 @@
-"""gridrt-host on a board that a real kernel has enumerated: the same bytes as without it."""
+"""The programs on a board that a real kernel has enumerated: the bytes of seq, reports, and what
+goes wrong on a desk."""
 import json
 import pathlib
+import re
 import subprocess
 import tempfile
 import unittest
@@ -9,16 +11,43 @@ from guest import BIN, Guest
 
 SIZE = "64x48"
 SCRIPT = f"""
-ok() {{ "$@" || echo "FAILED: $*"; }}
+run() {{ echo "== $1"; shift; "$@" 2>&1; echo "-- $?"; }}
+as_nobody() {{ su nobody -c "LD_LIBRARY_PATH=/lib PATH=/programs $*"; }}
 for i in $(seq 50); do [ -e /dev/hidraw0 ] && break; sleep 0.1; done
-ok gridrt-host --list-devices
-ok gridrt-host /teapot.grt --size {SIZE} --device usb:virtual-1 --hits usb.npy -o usb.png --stats usb.json
-ok gridrt-host /teapot.grt --size {SIZE} -o auto.png
-gridrt-host /teapot.grt --size {SIZE} --device usb:other -o other.png; echo "code $?"
+run devices gridrt-host --list-devices
+run render gridrt-host /teapot.grt --size {SIZE} --device usb:virtual-1 --hits usb.npy -o usb.png \\
+    --stats usb.json --progress off
+run auto gridrt-host /teapot.grt --size {SIZE} -o auto.png
+run other gridrt-host /teapot.grt --size {SIZE} --device usb:other -o other.png
+run list gridrt-board list
+run info gridrt-board info
+run log gridrt-board log
+gridrt-board log --follow 5 >followed 2>&1 &
+sleep 1
+run selftest gridrt-board selftest
+run counters gridrt-board counters
+run load gridrt-board load /teapot.grt
+run loaded gridrt-board info
+run reset gridrt-board reset
+wait
+run followed cat followed
+run no-permission-frames as_nobody gridrt-host /teapot.grt --device usb --hits n.npy
+run no-permission-reports as_nobody gridrt-board info
+run no-permission-list as_nobody gridrt-board list
+(gridrt-host /teapot.grt --size 640x480 --samples 16 --device usb -o big.png --progress off \\
+    >unplugged 2>&1; echo "ended with $?" >>unplugged) &
+for i in $(seq 100); do [ $(gridrt-board counters | sed -n 's/rays *//p') -gt 0 ] && break; done
+run in-use gridrt-board load /teapot.grt
+run reports-meanwhile gridrt-board counters
+echo 1 >/sys/bus/usb/devices/1-1/remove
+wait
+run unplugged cat unplugged
+run no-board gridrt-board info
+ls big.png other.png 2>/dev/null
 """
 
 
-class Renders(unittest.TestCase):
+class OnADesk(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         scratch = tempfile.TemporaryDirectory()
@@ -28,10 +57,13 @@ class Renders(unittest.TestCase):
                     "teapot.grt")
         cls.program("gridrt-host", "teapot.grt", "--size", SIZE, "--device", "seq", "--hits",
                     "seq.npy", "-o", "seq.png")
-        with Guest(["gridrt-host"], {"teapot.grt": cls.read("teapot.grt")}) as guest:
+        with Guest(["gridrt-host", "gridrt-board"],
+                   {"teapot.grt": cls.read("teapot.grt")}) as guest:
             board = guest.start_board("--core", "seq")
-            cls.console, cls.files = guest.run(SCRIPT, [board], timeout=400)
-        print(cls.console)
+            console, cls.files = guest.run(SCRIPT, [board], timeout=400)
+        print(console)
+        cls.steps = {name: (text, int(code)) for name, text, code in
+                     re.findall(r"(?ms)^== (\S+)\n(.*?)^-- (\d+)$", console)}
 
     @classmethod
     def program(cls, name, *words):
@@ -41,11 +73,14 @@ class Renders(unittest.TestCase):
     def read(cls, name):
         return (cls.path / name).read_bytes()
 
-    def test_every_step_works(self):
-        self.assertNotIn("FAILED", self.console)
-        self.assertIn("usb:virtual-1 at 1-1: ready", self.console)
+    def step(self, name, code=0):
+        """The words of a step, which ended with this exit code."""
+        text, ended = self.steps[name]
+        self.assertEqual(ended, code, f"{name}: {text}")
+        return text
 
     def test_hits_and_picture_are_the_bytes_of_seq(self):
+        self.step("render")
         self.assertEqual(self.files["usb.npy"], self.read("seq.npy"))
         self.assertEqual(self.files["usb.png"], self.read("seq.png"))
 
@@ -56,13 +91,46 @@ class Renders(unittest.TestCase):
         self.assertGreater(stats["steps"], 1000)
         self.assertEqual(stats["frames_retried"], 0)
 
-    def test_auto_takes_the_board(self):
-        self.assertIn("Device usb: a GridRT board is plugged in.", self.console)
+    def test_boards_are_listed_and_chosen(self):
+        self.assertIn("usb:virtual-1 at 1-1: ready", self.step("devices"))
+        self.assertRegex(self.step("list"), r"^usb:virtual-1  port 1-1  /dev/bus/usb/\d+/\d+  "
+                                            r"/dev/hidraw0  ready\n$")
+        self.assertIn("Device usb: a GridRT board is plugged in.", self.step("auto"))
         self.assertEqual(self.files["auto.png"], self.read("seq.png"))
+        self.assertIn("no GridRT board with serial 'other' is plugged in", self.step("other", 6))
+        self.assertNotIn("other.png", self.files)
 
-    def test_another_serial_is_refused(self):
-        self.assertIn("no GridRT board with serial 'other' is plugged in", self.console)
-        self.assertIn("code 6", self.console)
+    def test_reports(self):
+        info = self.step("info")
+        for line in (r"name +board", r"serial +virtual-1", r"PEs +4", r"clock +60000000 Hz",
+                     r"self-test +Never: .*run 0"):
+            self.assertRegex(info, rf"(?m)^{line}$")
+        self.assertRegex(self.step("log"), r"(?m)^ *\d+  Started +\d+$")
+        self.assertRegex(self.step("selftest"), r"^Passed: (\d+) of \1 bytes .* run 1\n$")
+        self.assertRegex(self.step("counters"), r"(?m)^rays +\d+$")
+        self.assertRegex(self.step("load"), r"teapot.grt: \d+ bytes in .*; the board answers rays")
+        self.assertRegex(self.step("loaded"), r"(?m)^state +Ready$")
+        self.assertEqual(self.step("reset"), "reset; state Empty\n")
+
+    def test_what_the_board_says_by_itself_arrives(self):
+        self.assertRegex(self.step("followed"), r"(?m)^ *\d+  SelfTestPassed +\d+$")
+
+    def test_without_permission_the_rule_is_named(self):
+        for name, node in (("frames", "/dev/bus/usb/"), ("reports", "/dev/hidraw0")):
+            text = self.step(f"no-permission-{name}", 6)
+            self.assertIn(f"no permission to use the board: {node}", text)
+            self.assertIn("70-gridrt.rules", text)
+        self.assertIn("no permission to use the board", self.step("no-permission-list"))
+
+    def test_two_programs_at_once(self):
+        self.assertIn("another program is using the board at 1-1", self.step("in-use", 6))
+        self.assertRegex(self.step("reports-meanwhile"), r"(?m)^rays +[1-9]\d*$")
+
+    def test_unplugged_in_the_middle(self):
+        self.assertIn("the board was unplugged, or it lost its power", self.step("unplugged"))
+        self.assertIn("ended with 6", self.step("unplugged"))
+        self.assertNotIn("big.png", self.files)
+        self.assertIn("no GridRT board is plugged in", self.step("no-board", 6))
 
 
 if __name__ == "__main__":
