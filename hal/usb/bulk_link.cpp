@@ -205,11 +205,11 @@ Result<void> BulkLink::wait_for_room(Piece& piece) {
     if (nothing_coming()) {
       if (auto put = put_by(); !put) return put;
     }
-    if (Clock::now() >= end) {
+    if (auto waited = wait_for_events(std::min(kSlice, options_.patience)); !waited) return waited;
+    if (piece.state == State::kInFlight && Clock::now() >= end) {
       return std::unexpected(usb_error::takes_no_bytes(
           static_cast<std::size_t>(piece.transfer->length), options_.patience));
     }
-    if (auto waited = wait_for_events(kSlice); !waited) return waited;
   }
   if (piece.state == State::kIdle) return {};
   piece.state = State::kIdle;

@@ -13,14 +13,15 @@ namespace {
 
 using protocol::FrameType;
 
-constexpr int kMostAttempts = 8;
-constexpr std::chrono::milliseconds kPatience(250);  ///< for one attempt, doubled each time
-constexpr std::uint32_t kPausesPerSecond = 4;        ///< a frame that pauses for longer is given up
+constexpr int kMostAttempts = 6;  ///< the last one waits for half of the time limit, each one
+                                  ///< before it for half as long
+constexpr std::uint32_t kPausesPerSecond = 4;  ///< a frame that pauses for longer is given up
 
 /// Reads until the board has answered a NoOp, so that no answer to an earlier program is taken for
 /// one to this. A frame that such a program left unfinished may swallow the first NoOps.
-Result<void> synchronise(Connection& connection) {
-  std::chrono::milliseconds patience = kPatience;
+Result<void> synchronise(Connection& connection, std::chrono::milliseconds limit) {
+  std::chrono::milliseconds patience =
+      std::max(limit / (1 << kMostAttempts), std::chrono::milliseconds(1));
   for (int attempt = 0; attempt < kMostAttempts; ++attempt, patience *= 2) {
     const std::uint32_t sequence = connection.next_sequence();
     if (auto sent = connection.send(FrameType::kNoOp, sequence, {}); !sent) return sent;
@@ -62,7 +63,8 @@ Result<std::unique_ptr<Device>> open_usb_device(const DeviceOptions& options) {
       return std::unexpected(std::move(set.error()));
     }
   }
-  if (auto done = synchronise(connection); !done) return std::unexpected(std::move(done.error()));
+  if (auto done = synchronise(connection, usb.patience); !done)
+    return std::unexpected(std::move(done.error()));
   if (auto counts = (*session)->start_counting(); !counts) {
     return std::unexpected(std::move(counts.error()));
   }

@@ -23,6 +23,7 @@ ifconfig lo 127.0.0.1 up
 export PATH=/bin:/programs LD_LIBRARY_PATH=/lib LC_ALL=C.UTF-8 HOME=/
 stty raw -echo -F /dev/ttyS1
 mkdir -p /out; cd /out
+mkdir -p /usr/share/misc /var/run; touch /usr/share/misc/usb.ids  # for usbip
 echo guest: up after $(cut -d' ' -f1 /proc/uptime) s
 . /test.sh
 """
@@ -51,7 +52,7 @@ class Guest:
     def __init__(self, programs, files=None, memory_mb=1024):
         self.folder = tempfile.TemporaryDirectory(prefix="gridrt-guest-")
         self.path = pathlib.Path(self.folder.name)
-        self.programs = [need(BIN / name, "a program of this build") for name in programs]
+        self.programs = [need(BIN / name, f"the program {name}") for name in programs]
         self.files = files or {}
         self.memory_mb = memory_mb
         self.qemu = need("qemu-system-x86_64", "QEMU")

@@ -43,7 +43,13 @@ echo 1 >/sys/bus/usb/devices/1-1/remove
 wait
 run unplugged cat unplugged
 run no-board gridrt-board info
-ls big.png other.png 2>/dev/null
+gridrt-virtual-board --core seq --usbip 3240 --serial over-ip &
+for i in $(seq 50); do usbip list -r 127.0.0.1 >exported 2>/dev/null && break; sleep 0.1; done
+run usbip-list cat exported
+run usbip-attach usbip attach -r 127.0.0.1 -b 1-1
+for i in $(seq 50); do [ -e /dev/hidraw0 ] && break; sleep 0.1; done
+run usbip-render gridrt-host /teapot.grt --size {SIZE} --device usb:over-ip -o ip.png
+run usbip-selftest gridrt-board selftest
 """
 
 
@@ -57,7 +63,7 @@ class OnADesk(unittest.TestCase):
                     "teapot.grt")
         cls.program("gridrt-host", "teapot.grt", "--size", SIZE, "--device", "seq", "--hits",
                     "seq.npy", "-o", "seq.png")
-        with Guest(["gridrt-host", "gridrt-board"],
+        with Guest(["gridrt-host", "gridrt-board", "gridrt-virtual-board", "/usr/sbin/usbip"],
                    {"teapot.grt": cls.read("teapot.grt")}) as guest:
             board = guest.start_board("--core", "seq")
             console, cls.files = guest.run(SCRIPT, [board], timeout=400)
@@ -131,6 +137,13 @@ class OnADesk(unittest.TestCase):
         self.assertIn("ended with 6", self.step("unplugged"))
         self.assertNotIn("big.png", self.files)
         self.assertIn("no GridRT board is plugged in", self.step("no-board", 6))
+
+    def test_linux_attaches_it_over_ip(self):
+        self.assertIn("(1209:0001)", self.step("usbip-list"))
+        self.step("usbip-attach")
+        self.step("usbip-render")
+        self.assertEqual(self.files["ip.png"], self.read("seq.png"))
+        self.assertRegex(self.step("usbip-selftest"), r"^Passed: ")
 
 
 if __name__ == "__main__":
