@@ -2,7 +2,7 @@
 // ends of tasks pass through. Everything leaves in the order in which it came.
 //
 // Events wait in a queue that keeps their order; those with a hit take a divider, in turn, until
-// they leave. A miss behind a hit so costs nothing until that queue is full.
+// they leave it. A miss behind a hit so costs nothing until that queue is full.
 module gridrt_resolve #(
     parameter int unsigned B = 17,
     parameter int unsigned TRIS = 4096,
@@ -226,16 +226,27 @@ module gridrt_resolve #(
     end
   end
 
-  assign event_valid_o = out_valid && !(out_divides && dividing[out_lane]);
-  assign leaves = event_valid_o && event_ready_i;
-  assign event_o = {
-    out_slot,
-    out_last,
-    out_hit,
-    out_divides ? quotient[out_lane] : {gridrt_pkg::Q_W{1'b0}},
-    out_id,
-    out_divides ? limit[out_lane] : {gridrt_pkg::DIST_W{1'b0}}
-  };
+  // The event that leaves next waits in a register, for the choice among PEs takes long.
+  logic finished, out_ready;
+  assign finished = out_valid && !(out_divides && dividing[out_lane]);
+  assign out_ready = !event_valid_o || event_ready_i;
+  assign leaves = finished && out_ready;
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) event_valid_o <= 1'b0;
+    else if (out_ready) event_valid_o <= finished;
+  end
+  always_ff @(posedge clk_i) begin
+    if (out_ready) begin
+      event_o <= {
+        out_slot,
+        out_last,
+        out_hit,
+        out_divides ? quotient[out_lane] : {gridrt_pkg::Q_W{1'b0}},
+        out_id,
+        out_divides ? limit[out_lane] : {gridrt_pkg::DIST_W{1'b0}}
+      };
+    end
+  end
 
   logic unused;
   assign unused = (^count) ^ (^id_other) ^ entry_room ^ (^order_count);
