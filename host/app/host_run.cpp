@@ -110,6 +110,7 @@ Result<void> HostRun::open() {
   device.threads = options_.threads;
   device.rays_per_frame = options_.batch;
   device.waves = options_.trace;
+  device.flash = options_.flash;
   if (auto read = read_pes_switches(device); !read) return read;
   auto opened = open_device(device);
   if (!opened) return std::unexpected(opened.error());

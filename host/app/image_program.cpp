@@ -10,8 +10,10 @@
 #include "host/app/options.hpp"
 #include "host/app/prepared_scene.hpp"
 #include "host/app/progress.hpp"
+#include "host/driver/flash_image.hpp"
 #include "host/image/image_file.hpp"
 #include "host/image/output_file.hpp"
+#include "host/pe/capabilities.hpp"
 #include "host/scene/load.hpp"
 
 namespace gridrt {
@@ -47,6 +49,29 @@ Result<void> make(const ImageProgramOptions& options) {
   return file->commit();
 }
 
+Result<void> make_flash(const ImageProgramOptions& options) {
+  auto file = OutputFile::create(options.firmware);
+  if (!file) return std::unexpected(file.error());
+  Progress progress(options.progress);
+  progress.phase("building");
+  const protocol::CapabilitiesReport board = board_capabilities();
+  auto prepared = prepare_scene(options.scene, options.cut, board);
+  if (!prepared) return std::unexpected(prepared.error());
+  progress.clear();
+  print_warnings(kProgram, prepared->scene);
+  progress.phase("writing");
+  if (prepared->images->chunks.size() != 1) {
+    return fail(ErrorKind::kLimit,
+                fmt::format("{}: takes {} images of the board's size, a flash image holds one",
+                            options.scene, prepared->images->chunks.size()),
+                "use a scene with fewer triangles");
+  }
+  auto flash = flash_image(prepared->image(), board);
+  if (!flash) return std::unexpected(flash.error());
+  if (auto done = file->write(*flash); !done) return done;
+  return file->commit();
+}
+
 Result<void> verify(const std::string& path) {
   auto image = read_image(path);
   if (!image) return std::unexpected(image.error());
@@ -59,9 +84,7 @@ Result<void> verify(const std::string& path) {
 }
 
 Result<void> run(const ImageProgramOptions& options) {
-  if (!options.firmware.empty()) {
-    return fail(ErrorKind::kUnsupported, "--firmware is not built in yet: there is no flash image");
-  }
+  if (!options.firmware.empty()) return make_flash(options);
   if (!options.info.empty()) {
     auto image = read_image(options.info);
     if (!image) return std::unexpected(image.error());

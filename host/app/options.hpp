@@ -57,6 +57,7 @@ struct HostOptions {
   std::string stats;
   std::string lattice;
   std::string trace;
+  std::string flash;
   bool any_hit = false;
   std::optional<glm::ivec2> explain;
   ProgressMode progress = ProgressMode::kAuto;

@@ -80,6 +80,8 @@ void add_options(CLI::App& app, HostOptions& options, HostTexts& texts) {
   constexpr const char* kDevice = "Device (never changes the answer)";
   add(kDevice, "--device", options.device, "NAME",
       "auto, usb[:SERIAL], sim, omp (threads), mpi or seq (one thread, the reference)");
+  add(kDevice, "--flash", options.flash, "FILE",
+      "with --device sim: what the board's flash holds (gridrt-image --firmware)");
   add(kDevice, "--schedule", options.schedule, "NAME",
       "how software PEs share the work: rays (default), pes (default of mpi) or paper");
   add(kDevice, "--threads", texts.threads, "N", "threads of omp and of the shading (default: all)");

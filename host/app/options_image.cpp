@@ -13,6 +13,7 @@ constexpr const char* kExamples =
     "  gridrt-image builtin:teapot -o teapot.grt --pes 4\n"
     "  gridrt-image --info teapot.grt\n"
     "  gridrt-image --verify teapot.grt\n"
+    "  gridrt-image builtin:teapot --firmware teapot.flash\n"
     "  gridrt-host teapot.grt -o teapot.png\n";
 
 }  // namespace
@@ -39,7 +40,7 @@ Result<std::variant<ImageProgramOptions, PrintAndExit>> parse_image_options(
       ->group(kActions)
       ->type_name("FILE.grt");
   app.add_option("--firmware", options.firmware,
-                 "make a flash image for the board (not built in yet)")
+                 "make a flash image of SCENE, from which the board starts without a host")
       ->group(kActions)
       ->type_name("FILE");
   add_cut_options(app, cut);
@@ -74,7 +75,7 @@ Result<std::variant<ImageProgramOptions, PrintAndExit>> parse_image_options(
   if (cuts && options.output.empty() && options.firmware.empty()) {
     return fail(ErrorKind::kUsage, "--bits, --grid, --pes, --mapping and --layout go with -o");
   }
-  if (!options.output.empty() && options.scene.empty()) {
+  if ((!options.output.empty() || !options.firmware.empty()) && options.scene.empty()) {
     return fail(ErrorKind::kUsage, "no scene is given",
                 "for example: gridrt-image builtin:teapot -o teapot.grt");
   }

@@ -45,6 +45,7 @@ struct DeviceOptions {
   int timeout_ms = 10000;              ///< longest wait for one answer
   bool spread_rays = true;  ///< to a clocked device: neighbours far apart (ray_order.hpp)
   std::string waves = {};   ///< of sim: an FST file for all signals; empty: none
+  std::string flash = {};   ///< of sim: a flash image for the board to start from; empty: none
   /// Software PEs that say, and keep to, less than they could: for tests. The device `seq-board`
   /// is `seq` with board_capabilities().
   std::optional<protocol::CapabilitiesReport> capabilities = std::nullopt;

@@ -6,14 +6,12 @@
 
 #include "hal/crc32c.hpp"
 #include "host/driver/upload.hpp"
-#include "host/image/image_file.hpp"
 #include "host/image/image_frames.hpp"
 
 namespace gridrt {
 
 Fingerprint fingerprint(const Image& image) {
-  // The header holds the size and the CRC-32C of every section; the sections' bytes count, too,
-  // since 32 bits are few. Two 64-bit hashes of different kinds: FNV-1a, and multiply and rotate.
+  // Two 64-bit hashes of different kinds: FNV-1a, and multiply and rotate.
   constexpr std::uint64_t kFnvPrime = 0x100000001B3;
   constexpr std::uint64_t kOdd = 0x9E3779B97F4A7C15;
   constexpr int kTurn = 29;
@@ -26,9 +24,21 @@ Fingerprint fingerprint(const Image& image) {
       b = std::rotl(b + value, kTurn) * kOdd;
     }
   };
-  add(header_section(image));
+  // What the header says but for its sections, some of which are the host's own.
+  protocol::ImageHeader header = image.header;
+  header.sections = 0;
+  std::array<std::byte, protocol::ImageHeader::kBytes> head{};
+  protocol::store(header, head);
+  add(head);
   for (const ImageSection& section : image.sections) {
-    if (is_for_device(section.kind)) add(section.bytes);
+    if (!is_for_device(section.kind)) continue;
+    const std::array<std::byte, 2> name{static_cast<std::byte>(section.kind),
+                                        static_cast<std::byte>(section.pe)};
+    std::array<std::byte, 4> size{};
+    protocol::detail::put32(size.data(), static_cast<std::uint32_t>(section.bytes.size()));
+    add(name);
+    add(size);
+    add(section.bytes);
   }
   Fingerprint out{};
   for (std::size_t i = 0; i < 8; ++i) {

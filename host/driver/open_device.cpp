@@ -132,6 +132,10 @@ Result<std::unique_ptr<Device>> open_device(const DeviceOptions& options) {
     return fail(ErrorKind::kUsage, fmt::format("device '{}' has no waves to trace", chosen.name),
                 "use --device sim, or leave --trace out");
   }
+  if (!chosen.flash.empty() && !is_sim(chosen.name)) {
+    return fail(ErrorKind::kUsage, fmt::format("device '{}' has no flash to give it", chosen.name),
+                "use --device sim, or leave --flash out");
+  }
   const std::string available = fmt::format("{}", fmt::join(built_in_devices(), ", "));
   if (is_planned(chosen.name)) {
     return fail(ErrorKind::kUnsupported,

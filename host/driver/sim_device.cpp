@@ -6,11 +6,13 @@
 #include "hal/sim/boards.hpp"
 #include "hal/sim/sim_transport.hpp"
 #include "host/driver/session.hpp"
+#include "host/image/image_file.hpp"
 
 namespace gridrt {
 namespace {
 
 constexpr std::uint32_t kIdleClocks = 20'000;
+constexpr std::uint64_t kBootClocks = 100;  ///< a byte of flash, at the most
 
 }  // namespace
 
@@ -20,10 +22,18 @@ Result<std::unique_ptr<Device>> open_sim(const DeviceOptions& options) {
   const std::size_t colon = options.name.find(':');
   const std::string board_name = colon == std::string::npos ? std::string(sim_boards().front())
                                                             : options.name.substr(colon + 1);
-  Result<std::unique_ptr<SimBoard>> board = make_sim_board(board_name, {.waves = options.waves});
+  SimBoardOptions board_options{.waves = options.waves, .flash = {}};
+  SimTransportOptions link_options;
+  if (!options.flash.empty()) {
+    auto flash = read_bytes(options.flash);
+    if (!flash) return std::unexpected(std::move(flash.error()));
+    link_options.report_clocks += kBootClocks * flash->size();
+    board_options.flash = std::move(*flash);
+  }
+  Result<std::unique_ptr<SimBoard>> board = make_sim_board(board_name, board_options);
   if (!board) return std::unexpected(std::move(board.error()));
   Result<std::unique_ptr<Session>> session =
-      Session::open(std::make_unique<SimTransport>(std::move(*board)), options);
+      Session::open(std::make_unique<SimTransport>(std::move(*board), link_options), options);
   if (!session) return std::unexpected(std::move(session.error()));
   (*session)->set_name(options.name);
   // A frame that stays unfinished will stay so: the link never pauses within one.

@@ -55,7 +55,7 @@ Result<void> write_image(const Image& image, const std::filesystem::path& path) 
   return written ? file->commit() : written;
 }
 
-Result<Image> read_image(const std::filesystem::path& path) {
+Result<std::vector<std::byte>> read_bytes(const std::filesystem::path& path) {
   const File file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
   if (file.get() < 0) return file_error(path, "open", errno);
   struct stat info{};
@@ -73,7 +73,13 @@ Result<Image> read_image(const std::filesystem::path& path) {
     size += static_cast<std::size_t>(count);
   }
   bytes.resize(size);
-  return parse_image(bytes, path.string());
+  return bytes;
+}
+
+Result<Image> read_image(const std::filesystem::path& path) {
+  const auto bytes = read_bytes(path);
+  if (!bytes) return std::unexpected(bytes.error());
+  return parse_image(*bytes, path.string());
 }
 
 }  // namespace gridrt

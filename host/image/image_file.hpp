@@ -15,6 +15,9 @@ namespace gridrt {
 /// with what the system said.
 Result<void> write_image(const Image& image, const std::filesystem::path& path);
 
+/// A whole file. Errors: kFile if it cannot be read.
+Result<std::vector<std::byte>> read_bytes(const std::filesystem::path& path);
+
 /// Reads a file and parses it. Errors: kFile if it cannot be read, kInput as parse_image.
 Result<Image> read_image(const std::filesystem::path& path);
 

@@ -31,7 +31,6 @@ class Usage(ProgramTest):
     def test_what_is_not_built_in_is_5(self):
         done = self.host("builtin:teapot", "-o", "a.png", "--exact", code=5)
         self.assertIn("not built in yet", done.stderr)
-        self.image("--firmware", "f.bin", code=5)
         self.assertEqual(self.entries(), [])
 
     def test_a_board_that_is_not_there_is_6_and_auto_says_so(self):

@@ -46,6 +46,32 @@ class SimulatedBoard(ProgramTest):
         seen = {line for line in lives["sim"] if line.startswith("voxel")}
         self.assertLessEqual(met, seen)  # the board runs ahead, so it may have seen more
 
+    def test_a_board_that_starts_from_its_flash_needs_no_upload(self):
+        scene = ("builtin:cube", "--size", "40x30")
+        self.image(scene[0], "--firmware", "cube.flash")
+        self.host(*scene, "--device", "sim", "--flash", "cube.flash", "--hits", "a.npy",
+                  "--stats", "a.json")
+        self.host(*scene, "--device", "sim", "--hits", "b.npy", "--stats", "b.json")
+        self.assertEqual(self.read("a.npy"), self.read("b.npy"))
+        self.assertEqual(self.statistics("a.json")["uploads"], 0)
+        self.assertEqual(self.statistics("b.json")["uploads"], 1)
+        self.assertLess(self.statistics("a.json")["bytes_out"],
+                        self.statistics("b.json")["bytes_out"] - 1000)
+        # Another scene than the one in flash is sent.
+        self.host("builtin:cube?size=1,2,3", "--size", "8x6", "--device", "sim", "--flash", "cube.flash",
+                  "--stats", "c.json", "-o", "c.png")
+        self.assertEqual(self.statistics("c.json")["uploads"], 1)
+
+    def test_flash_images_that_cannot_be_are_refused(self):
+        self.image("builtin:cube", "--layout", "wide", "-o", "wide.grt")
+        self.image("wide.grt", "--firmware", "f.bin", code=5)
+        self.image(LARGE, "--firmware", "f.bin", code=5)
+        self.image("--firmware", "f.bin", code=2)
+        self.assertEqual(self.entries(), ["wide.grt"])
+        self.host("builtin:cube", "--device", "sim", "--flash", "none", "--stats", "s.json", code=4)
+        self.host("builtin:cube", "--device", "seq", "--flash", "wide.grt", "--stats", "s.json",
+                  code=2)
+
     def test_waves(self):
         self.host("builtin:cube", "--size", "4x3", "--device", "sim", "--trace", "w.fst")
         self.assertGreater(len(self.read("w.fst")), 10000)

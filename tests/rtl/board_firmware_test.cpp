@@ -194,8 +194,11 @@ TEST(BoardFirmware, AReportTakesSomeThousandClocks) {
 
 TEST(BoardFirmware, TheSelfTestPassesAndLeavesNothing) {
   Bench bench;
+  bench.state();
+  const std::uint64_t before = bench.board().clocks();
   ASSERT_TRUE(bench.command(BoardCommand::kSelfTest));
   const auto result = bench.report<protocol::SelfTestReport>();
+  RecordProperty("clocks", static_cast<int>(bench.board().clocks() - before));
   EXPECT_EQ(static_cast<protocol::SelfTestState>(result.state), protocol::SelfTestState::kPassed);
   EXPECT_EQ(result.runs, 1U);
   EXPECT_GT(result.total, 4 * result.rays);
@@ -214,6 +217,7 @@ TEST(BoardFirmware, AnImageInFlashAnswersRaysWithoutAnUpload) {
   EXPECT_EQ(boot.fingerprint, fingerprint(image()));
   EXPECT_EQ(boot.resident, 1U);
   RecordProperty("clocks", static_cast<int>(bench.board().clocks()));
+  RecordProperty("bytes", static_cast<int>(boot.length));
   const auto session = bench.open();
   ASSERT_TRUE(session->load(image()));
   const auto counters = session->counters();
