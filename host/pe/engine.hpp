@@ -33,6 +33,8 @@ class Engine {
 
   [[nodiscard]] const TraversalMemory& traversal() const { return traversal_; }
 
+  [[nodiscard]] std::size_t pes() const { return pes_.size(); }
+
   /// PE `number`, or nullptr if it is absent.
   [[nodiscard]] const Pe* pe(std::size_t number) const {
     const std::optional<Pe>& pe = pes_[number];

@@ -55,6 +55,8 @@ class Pe {
     return triangles_[reference.triangle];
   }
 
+  [[nodiscard]] std::span<const Triangle> triangles() const { return triangles_; }
+
   /// Tests the references [first, first + count) that touch one of `octants` and lowers
   /// `best` to the smallest key found. The range lies within references().
   void test(const PeRay& ray, std::uint32_t first, std::uint32_t count, OctantSet octants,

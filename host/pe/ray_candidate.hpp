@@ -41,11 +41,8 @@ inline std::optional<std::uint32_t> exact_quotient(bool narrow, const glm::ivec3
   return hit_quotient(*hit);
 }
 
-/// Tests the triangle whose 12 numbers are `lanes` apart from `row` on, and keeps its key if it is
-/// the smallest; true if it is.
-inline bool settle(bool narrow, const float* row, std::size_t lanes, std::uint32_t id,
-                   TestLane& test) {
-  if (id == test.ray->ray.ignore) return false;
+/// The triangle whose 12 numbers are `lanes` apart from `row` on.
+inline EdgeTriangle triangle_of(const float* row, std::size_t lanes) {
   EdgeTriangle t;
   for (int a = 0; a < 3; ++a) {
     t.v0[a] = static_cast<int>(row[0]);
@@ -53,7 +50,15 @@ inline bool settle(bool narrow, const float* row, std::size_t lanes, std::uint32
     t.e2[a] = static_cast<int>(row[6 * lanes]);
     row += lanes;
   }
-  const std::optional<std::uint32_t> q = exact_quotient(narrow, test.ray->ray.p0, test.d, t);
+  return t;
+}
+
+/// Tests that triangle, and keeps its key if it is the smallest; true if it is.
+inline bool settle(bool narrow, const float* row, std::size_t lanes, std::uint32_t id,
+                   TestLane& test) {
+  if (id == test.ray->ray.ignore) return false;
+  const std::optional<std::uint32_t> q =
+      exact_quotient(narrow, test.ray->ray.p0, test.d, triangle_of(row, lanes));
   if (!q || !(HitKey{*q, id} < test.best)) return false;
   test.best = {*q, id};
   // A smaller key has floor(2^24 tn / det) <= q.

@@ -18,6 +18,7 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 using Floats = hn::CappedTag<float, kMostLanes>;
+using Integers = hn::RebindToSigned<Floats>;
 using Vector = hn::Vec<Floats>;
 
 struct Vector3 {
@@ -58,33 +59,56 @@ inline WideRay widen(const TestLane& test) {
   return {{set(p0.x), set(p0.y), set(p0.z)}, {set(test.d.x), set(test.d.y), set(test.d.z)}};
 }
 
-/// The triangles of a block that the ray may hit at tn <= limit * det, a bit each. Never leaves one
-/// out that it does hit (docs/numerics.md, section 7): `e` bounds the error of u, v and det, `f`
-/// half of what that of tn, with theirs, may come to.
-HWY_INLINE unsigned candidates(const float* block, const WideRay& ray, float e, float f,
-                               float limit) {
+/// What is computed of each lane's ray and triangle, all by det's sign.
+struct Test {
+  Vector size;  ///< |det|
+  Vector u, v, tn;
+};
+
+/// From det, tn, the edges and r = (V0 - P0) x D.
+HWY_INLINE Test make_test(const Vector& det, const Vector& tn, const Vector3& e1, const Vector3& e2,
+                          const Vector3& r) {
+  const Vector sign_bit = hn::SignBit(Floats{});
+  const Vector sign = hn::And(det, sign_bit);
+  return {hn::Xor(det, sign), hn::Xor(dot(e2, r), sign),
+          hn::Xor(dot(e1, r), hn::Xor(sign, sign_bit)), hn::Xor(tn, sign)};
+}
+
+/// Lanes in which the ray meets the triangle at 0 <= tn <= limit * det. Never leaves one out that
+/// is hit (docs/numerics.md, section 7): `e` bounds the error of u, v and det, `f` half of what
+/// that of tn, with theirs, may come to.
+HWY_INLINE hn::Mask<Floats> possible(const Test& test, float e, float f, const Vector& limit) {
   const Floats tag;
-  const std::size_t n = hn::Lanes(tag);
+  const auto inside = hn::Ge(hn::Min(test.u, test.v), hn::Set(tag, -4.0F * e));
+  const auto below = hn::Le(hn::Sub(hn::Add(test.u, test.v), test.size), hn::Set(tag, 8.0F * e));
+  const auto after = hn::Ge(test.tn, hn::Set(tag, -f));
+  const auto before = hn::Le(hn::NegMulAdd(limit, test.size, test.tn), hn::Set(tag, f));
+  return hn::And(hn::And(inside, below), hn::And(after, before));
+}
+
+/// Lanes in which it surely does, with limit = 1.
+HWY_INLINE hn::Mask<Floats> certain(const Test& test, float e, float f) {
+  const Floats tag;
+  const auto inside = hn::Ge(hn::Min(test.u, test.v), hn::Set(tag, 4.0F * e));
+  const auto below = hn::Ge(hn::Sub(test.size, hn::Add(test.u, test.v)), hn::Set(tag, 8.0F * e));
+  const auto after = hn::Ge(hn::Min(test.tn, hn::Sub(test.size, test.tn)), hn::Set(tag, f));
+  return hn::And(hn::And(inside, below), after);
+}
+
+/// A block's triangles with one ray.
+HWY_INLINE Test test_block(const float* block, const WideRay& ray) {
+  const std::size_t n = hn::Lanes(Floats{});
   const Vector3 v0 = load_rows(block);
   const Vector3 t{hn::Sub(v0.x, ray.p0.x), hn::Sub(v0.y, ray.p0.y), hn::Sub(v0.z, ray.p0.z)};
   const Vector3 normal = load_rows(block + 9 * n);
-  const Vector det = dot(ray.d, normal);
-  const Vector tn = dot(t, normal);
-  const Vector3 r = cross(t, ray.d);
-  const Vector u = dot(load_rows(block + 6 * n), r);
-  const Vector minus_v = dot(load_rows(block + 3 * n), r);
-  // All by det's sign.
-  const Vector sign_bit = hn::SignBit(tag);
-  const Vector sign = hn::And(det, sign_bit);
-  const Vector size = hn::Xor(det, sign);
-  const Vector u1 = hn::Xor(u, sign);
-  const Vector v1 = hn::Xor(minus_v, hn::Xor(sign, sign_bit));
-  const Vector tn1 = hn::Xor(tn, sign);
-  const auto inside = hn::Ge(hn::Min(u1, v1), hn::Set(tag, -4.0F * e));
-  const auto below = hn::Le(hn::Sub(hn::Add(u1, v1), size), hn::Set(tag, 8.0F * e));
-  const auto after = hn::Ge(tn1, hn::Set(tag, -f));
-  const auto before = hn::Le(hn::NegMulAdd(hn::Set(tag, limit), size, tn1), hn::Set(tag, f));
-  return mask_bits(hn::And(hn::And(inside, below), hn::And(after, before)));
+  return make_test(dot(ray.d, normal), dot(t, normal), load_rows(block + 3 * n),
+                   load_rows(block + 6 * n), cross(t, ray.d));
+}
+
+/// The triangles of a block that the ray may hit at tn <= limit * det, a bit each.
+HWY_INLINE unsigned candidates(const float* block, const WideRay& ray, float e, float f,
+                               float limit) {
+  return mask_bits(possible(test_block(block, ray), e, f, hn::Set(Floats{}, limit)));
 }
 
 /// Tests the triangles of a voxel; true if the ray's best hit has changed.

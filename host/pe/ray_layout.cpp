@@ -66,6 +66,7 @@ RayLayout RayLayout::build(const Engine& engine, int bits, std::size_t lanes, in
 
   // Voxels in their order, so that neighbours along x lie side by side.
   std::vector<const Cell*> sources;
+  std::vector<glm::ivec3> voxels;
   std::uint32_t blocks = 0;
   std::size_t at = 0;
   for (int z = 0; z < size.z; ++z) {
@@ -81,6 +82,7 @@ RayLayout RayLayout::build(const Engine& engine, int bits, std::size_t lanes, in
         layout.cells_.push_back({blocks, wanted, cell->count, 0.0F});
         blocks += wanted;
         sources.push_back(cell);
+        voxels.push_back(voxel);
       }
     }
   }
@@ -98,6 +100,12 @@ RayLayout RayLayout::build(const Engine& engine, int bits, std::size_t lanes, in
     }
   }
   measure_empty_space(size, layout.codes_);
+  layout.boxes_ = TriangleBoxes::build(engine, sources, voxels, lanes, threads);
+  for (std::int32_t& code : layout.codes_) {
+    if (code >= 0) {
+      code = static_cast<std::int32_t>(layout.boxes_.start(static_cast<std::size_t>(code)));
+    }
+  }
 
   const std::size_t floats = std::size_t{blocks} * kBlockRows * lanes;
   layout.lines_.resize((floats + kMostLanes - 1) / kMostLanes + 1);

@@ -7,7 +7,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "host/pe/engine.hpp"
+#include "host/pe/triangle_boxes.hpp"
 
 namespace gridrt {
 
@@ -57,7 +57,7 @@ class RayLayout {
   /// of the border is like the one of the grid beside it.
   [[nodiscard]] const std::int32_t* codes() const { return codes_.data(); }
   [[nodiscard]] const LayoutCell& cell(std::int32_t code) const {
-    return cells_[static_cast<std::size_t>(code)];
+    return cells_[boxes_.voxel(static_cast<std::uint32_t>(code))[1]];
   }
   [[nodiscard]] const float* block(std::size_t number) const {
     return lines_.data()->x + number * kBlockRows * lanes_;
@@ -66,6 +66,7 @@ class RayLayout {
   [[nodiscard]] const std::uint32_t* ids(std::size_t block) const {
     return ids_.data() + block * lanes_;
   }
+  [[nodiscard]] const TriangleBoxes& boxes() const { return boxes_; }
 
  private:
   std::size_t lanes_ = 1;
@@ -74,10 +75,11 @@ class RayLayout {
   glm::ivec3 stride_{1};
   int box_ = 0;
   bool narrow_ = true;
-  std::vector<std::int32_t> codes_;
-  std::vector<LayoutCell> cells_;
-  std::vector<FloatLine> lines_;
-  std::vector<std::uint32_t> ids_;
+  LargeVector<std::int32_t> codes_;
+  LargeVector<LayoutCell> cells_;
+  LargeVector<FloatLine> lines_;
+  LargeVector<std::uint32_t> ids_;
+  TriangleBoxes boxes_;
 };
 
 }  // namespace gridrt

@@ -19,8 +19,6 @@ HWY_BEFORE_NAMESPACE();
 namespace gridrt {
 namespace HWY_NAMESPACE {
 
-using Integers = hn::RebindToSigned<Floats>;
-
 inline void idle_lane(MarchLanes& march, std::size_t lane) {
   for (std::size_t a = 0; a < 3; ++a) {
     march.first[a][lane] = 4.0F;

@@ -17,17 +17,18 @@
 
 #include "host/pe/ray_filter-inl.hpp"
 #include "host/pe/ray_march-inl.hpp"
+#include "host/pe/ray_packet-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace gridrt {
 namespace HWY_NAMESPACE {
 
-/// Takes rays from a batch and answers them.
+/// Takes rays from a batch, those that `places` names, and answers them.
 class Stream {
  public:
-  Stream(const RayLayout& layout, std::span<const BatchRay> rays, std::span<PeAnswer> answers,
-         PeCounters& counters)
-      : layout_(layout), rays_(rays), answers_(answers), counters_(counters) {}
+  Stream(const RayLayout& layout, std::span<const BatchRay> rays,
+         std::span<const std::uint32_t> places, std::span<PeAnswer> answers, PeCounters& counters)
+      : layout_(layout), rays_(rays), places_(places), answers_(answers), counters_(counters) {}
 
   void run() {
     const std::size_t lanes = hn::Lanes(Floats{});
@@ -58,8 +59,8 @@ class Stream {
 
  private:
   bool fill(std::size_t lane) {
-    while (next_ < rays_.size()) {
-      const std::size_t index = next_++;
+    while (next_ < places_.size()) {
+      const std::size_t index = places_[next_++];
       const BatchRay& ray = rays_[index];
       ++counters_.rays;
       if (ray.ray.p0 == ray.ray.p1) {
@@ -104,6 +105,7 @@ class Stream {
 
   const RayLayout& layout_;
   std::span<const BatchRay> rays_;
+  std::span<const std::uint32_t> places_;
   std::span<PeAnswer> answers_;
   PeCounters& counters_;
   std::size_t next_ = 0;
@@ -113,7 +115,16 @@ class Stream {
 
 void trace_stream(const RayLayout& layout, std::span<const BatchRay> rays,
                   std::span<PeAnswer> answers, PeCounters& counters) {
-  Stream(layout, rays, answers, counters).run();
+  const std::size_t lanes = hn::Lanes(Floats{});
+  std::vector<std::uint32_t> alone;
+  alone.reserve(rays.size());
+  Packet packet(layout);
+  for (std::size_t first = 0; first < rays.size(); first += lanes) {
+    const std::size_t count = std::min(lanes, rays.size() - first);
+    if (count == lanes && packet.trace(&rays[first], &answers[first], counters)) continue;
+    for (std::size_t i = 0; i < count; ++i) alone.push_back(static_cast<std::uint32_t>(first + i));
+  }
+  Stream(layout, rays, alone, answers, counters).run();
 }
 
 std::size_t stream_lanes() { return hn::Lanes(Floats{}); }

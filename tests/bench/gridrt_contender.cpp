@@ -91,6 +91,13 @@ class GridRT final : public Contender {
     if (part_ == Part::kPes) {
       PeCounters counters;
       trace_rays(*image_, batch_, records_, threads, counters);
+      if (getenv("CNT"))
+        printf(
+            "rays %lu steps %lu tests %lu hits %lu packets %lu voxels %lu blocks %lu tris %lu "
+            "maytris %lu better %lu open %lu\n",
+            counters.rays, counters.steps, counters.tests, counters.interrupts,
+            counters.tests_ahead, counters.barriers, counters.messages, counters.message_bytes,
+            counters.wait_ns, counters.worker_ns, counters.barrier_ns);
       return;
     }
     if (threads != threads_) {

@@ -76,6 +76,59 @@ TEST(Stream, EveryKindOfVectorsAnswersLikeThePlainSchedule) {
   EXPECT_GT(hits, 10000U);
 }
 
+/// Strips of neighbouring rays that go the same way: fans and parallel bundles from every side,
+/// some of them along axes and faces of voxels, dense and sparse, some ignoring a triangle.
+std::vector<Segment> bundles(const Image& image, int n, std::uint64_t seed) {
+  fixture::Random random(seed);
+  const glm::ivec3 box = image.lattice().box();
+  const VoxelGrid grid = image.grid();
+  std::vector<Segment> out;
+  while (static_cast<int>(out.size()) < n) {
+    const int axis = random.below(3);
+    const bool back = random.below(2) == 1;
+    Segment first;
+    first.t1 = 1.0;
+    for (int a = 0; a < 3; ++a) {
+      first.p0[a] = random.below(box[a] + 1);
+      first.p1[a] = random.below(3) == 0 ? first.p0[a] : random.below(box[a] + 1);
+      if (random.below(4) == 0) first.p0[a] = first.p0[a] / grid.edge[a] * grid.edge[a];
+    }
+    first.p0[axis] = back ? box[axis] - random.below(9) : random.below(9);
+    first.p1[axis] =
+        back ? random.below(box[axis] / 2 + 1) : box[axis] - random.below(box[axis] / 2 + 1);
+    const int side = (axis + 1 + random.below(2)) % 3;
+    const int steps = 1 + random.below(std::max(1, grid.edge[side] / 4));
+    const int spread = random.below(3) == 0 ? 0 : random.below(steps + 1);
+    if (random.below(4) == 0) first.ignore = static_cast<std::uint32_t>(random.below(40));
+    for (int i = 0; i < 64; ++i) {
+      Segment s = first;
+      s.p0[side] = std::clamp(s.p0[side] + i * spread, 0, box[side]);
+      s.p1[side] = std::clamp(s.p1[side] + i * steps, 0, box[side]);
+      out.push_back(s);
+    }
+  }
+  return out;
+}
+
+TEST(Stream, RaysThatGoTogetherAreAnsweredLikeRaysAlone) {
+  std::size_t hits = 0;
+  for (const int bits : {8, 17, 24}) {
+    for (const Image& image : images(bits)) {
+      const auto segments = bundles(image, 8000, 12);
+      for (const Query query : {Query::kClosestHit, Query::kAnyHit}) {
+        const auto expected = answers(image, segments, query, "plain", 1);
+        hits += static_cast<std::size_t>(
+            std::ranges::count_if(expected, [](const Hit& hit) { return hit.id >= 0; }));
+        for (const StreamKernel& kernel : stream_kernels()) {
+          const auto got = answers(image, segments, query, kernel.name, 1);
+          EXPECT_EQ(differences(got, expected), 0U) << kernel.name << ", " << bits << " bits";
+        }
+      }
+    }
+  }
+  EXPECT_GT(hits, 30000U);
+}
+
 TEST(Stream, KindsAreTheWidestFirstAndTheBaselineLast) {
   const auto kernels = stream_kernels();
   ASSERT_FALSE(kernels.empty());
