@@ -16,6 +16,7 @@
 #include "host/driver/image_options.hpp"
 #include "host/grid/lattice.hpp"
 #include "host/grid/segment.hpp"
+#include "host/grid/segments.hpp"
 #include "host/image/image.hpp"
 #include "host/scene/scene.hpp"
 
@@ -48,16 +49,15 @@ class Tracer {
   /// of validate for the first ray that is not valid (the message gives its index), and of
   /// Device::trace.
   Result<std::vector<Hit>> trace(std::span<const Ray> rays, Query query = Query::kClosestHit) {
-    std::vector<Segment> segments;
-    segments.reserve(rays.size());
-    for (const Ray& ray : rays) {
-      if (auto valid = validate(ray); !valid) {
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      if (auto valid = validate(rays[i]); !valid) {
         Error error = std::move(valid.error());
-        error.message = "ray " + std::to_string(segments.size()) + ": " + error.message;
+        error.message = "ray " + std::to_string(i) + ": " + error.message;
         return std::unexpected(std::move(error));
       }
-      segments.push_back(make_segment(lattice_, ray));
     }
+    std::vector<Segment> segments(rays.size());
+    make_segments(lattice_, rays, segments);
     std::vector<Hit> hits(rays.size());
     if (auto traced = device_->trace(segments, query, hits); !traced) {
       return std::unexpected(std::move(traced.error()));

@@ -1,7 +1,9 @@
 // Double-double numbers that carry an absolute error bound: the filter in front of rationals.
 #pragma once
 
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 
 #include "host/grid/two_sum.hpp"
@@ -14,6 +16,12 @@ struct Bounded {
   double lo = 0.0;
   double error = 0.0;
 };
+
+/// 2^k; a lattice's scale is far within (-1022, 1023), and so are products of moderate numbers
+/// with it: exact, and much faster than ldexp.
+inline double power_of_two(int k) {
+  return std::bit_cast<double>(static_cast<std::uint64_t>(1023 + k) << 52);
+}
 
 /// One double-double operation is wrong by at most a few 2^-104 of its result (Dekker, "A
 /// floating-point technique for extending the available precision", 1971); 2^-98 leaves room for

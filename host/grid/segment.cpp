@@ -1,9 +1,7 @@
 #include "host/grid/segment.hpp"
 
 #include <array>
-#include <bit>
 #include <cmath>
-#include <cstdint>
 
 #include <fmt/format.h>
 
@@ -16,12 +14,6 @@ namespace {
 
 /// Magnitudes for which no product or quotient of the filter comes near under- or overflow.
 bool is_moderate(double x) { return x == 0.0 || (std::abs(x) > 0x1p-200 && std::abs(x) < 0x1p200); }
-
-/// 2^k; a lattice's scale is far within (-1022, 1023), and so are products of moderate numbers
-/// with it: exact, and much faster than ldexp.
-double power_of_two(int k) {
-  return std::bit_cast<double>(static_cast<std::uint64_t>(1023 + k) << 52);
-}
 
 constexpr Cut kUndecided{};
 constexpr Cut kMiss{Cut::Outcome::kMiss, glm::ivec3{0}, glm::ivec3{0}, 0.0, 0.0};

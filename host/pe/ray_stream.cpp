@@ -134,26 +134,10 @@ std::size_t stream_lanes() { return hn::Lanes(Floats{}); }
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
+#include "host/grid/vector_name.hpp"
+
 namespace gridrt {
 namespace {
-
-std::string_view kernel_name(std::int64_t target) {
-  switch (target) {
-#if HWY_ARCH_X86
-    case HWY_AVX3:
-      return "avx512";
-    case HWY_AVX2:
-      return "avx2";
-    case HWY_SSE4:
-      return "sse4";
-#endif
-    case HWY_EMU128:
-    case HWY_SCALAR:
-      return "baseline";
-    default:
-      return hwy::TargetName(target);
-  }
-}
 
 HWY_EXPORT(trace_stream);
 HWY_EXPORT(stream_lanes);
@@ -167,7 +151,7 @@ std::vector<StreamKernel> stream_kernels() {
     hwy::ChosenTarget target;
     target.Update(left & -left);
     const std::size_t index = target.GetIndex();
-    kernels.push_back({kernel_name(left & -left), HWY_DISPATCH_TABLE(stream_lanes)[index](),
+    kernels.push_back({vector_name(left & -left), HWY_DISPATCH_TABLE(stream_lanes)[index](),
                        HWY_DISPATCH_TABLE(trace_stream)[index]});
   }
   return kernels;

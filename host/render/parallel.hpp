@@ -16,18 +16,17 @@ inline int resolve_threads(int threads) {
   return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
-/// Calls body(i) once for every i in [0, count), in any order, from up to `threads` threads. The
-/// body must not throw and must write only what belongs to its own i.
+/// Calls body(first, last) once for every piece of [0, count), in any order, from up to `threads`
+/// threads. The body must not throw and must write only what belongs to its own piece.
 template <class Body>
-void parallel_for(int threads, std::size_t count, const Body& body) {
+void parallel_pieces(int threads, std::size_t count, const Body& body) {
   constexpr std::size_t kGrain = 1024;
   std::atomic<std::size_t> next{0};
   const auto work = [&] {
     for (;;) {
       const std::size_t first = next.fetch_add(kGrain, std::memory_order_relaxed);
       if (first >= count) return;
-      const std::size_t last = std::min(count, first + kGrain);
-      for (std::size_t i = first; i < last; ++i) body(i);
+      body(first, std::min(count, first + kGrain));
     }
   };
   const std::size_t useful = (count + kGrain - 1) / kGrain;
@@ -43,6 +42,14 @@ void parallel_for(int threads, std::size_t count, const Body& body) {
     }
   }
   work();
+}
+
+/// Calls body(i) once for every i in [0, count), in any order, likewise.
+template <class Body>
+void parallel_for(int threads, std::size_t count, const Body& body) {
+  parallel_pieces(threads, count, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) body(i);
+  });
 }
 
 }  // namespace gridrt

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <vector>
 
+#include "host/grid/segments.hpp"
 #include "host/render/parallel.hpp"
 
 namespace gridrt {
@@ -32,8 +33,10 @@ Result<void> trace_stream(const Lattice& lattice, Device& device, std::uint64_t 
     segments.assign(count, Segment{});
     hits.assign(count, Hit{});
     if (auto filled = source(first, rays); !filled) return filled;
-    parallel_for(options.threads, count,
-                 [&](std::size_t i) { segments[i] = make_segment(lattice, rays[i]); });
+    parallel_pieces(options.threads, count, [&](std::size_t from, std::size_t to) {
+      make_segments(lattice, std::span(rays).subspan(from, to - from),
+                    std::span(segments).subspan(from, to - from));
+    });
     if (count > 0) {
       const auto trace_start = std::chrono::steady_clock::now();
       auto traced = device.trace(segments, options.query, hits);

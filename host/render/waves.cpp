@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "host/grid/segments.hpp"
 #include "host/render/parallel.hpp"
 #include "host/render/shading.hpp"
 #include "host/render/surface.hpp"
@@ -77,13 +78,21 @@ Result<void> WaveTracer::band(Film& film, std::size_t first, std::size_t pixels,
   const auto width = static_cast<std::size_t>(options_.width);
   Wave wave(pixels * samples);
   light_.assign(wave.size(), glm::dvec3(0.0));
-  parallel_for(options_.threads, wave.size(), [&](std::size_t i) {
-    const std::size_t pixel = first + (i / samples);
-    Path& path = wave[i];
-    path.ray = input_.camera.ray(static_cast<int>(pixel % width), static_cast<int>(pixel / width),
-                                 sample_position(static_cast<int>(i % samples), options_.samples));
-    path.segment = make_segment(input_.lattice, path.ray);
-    path.sample = static_cast<std::uint32_t>(i);
+  parallel_pieces(options_.threads, wave.size(), [&](std::size_t from, std::size_t to) {
+    std::vector<Ray> rays;
+    for (std::size_t i = from; i < to; ++i) {
+      const std::size_t pixel = first + (i / samples);
+      rays.push_back(
+          input_.camera.ray(static_cast<int>(pixel % width), static_cast<int>(pixel / width),
+                            sample_position(static_cast<int>(i % samples), options_.samples)));
+    }
+    std::vector<Segment> segments(rays.size());
+    make_segments(input_.lattice, rays, segments);
+    for (std::size_t i = from; i < to; ++i) {
+      wave[i].ray = rays[i - from];
+      wave[i].segment = segments[i - from];
+      wave[i].sample = static_cast<std::uint32_t>(i);
+    }
   });
   report_.primary += wave.size();
   if (auto done = run(std::move(wave), 0, sink); !done) return done;

@@ -3,6 +3,7 @@
 
 #include "host/driver/image_options.hpp"
 #include "host/driver/ray_records.hpp"
+#include "host/grid/segments.hpp"
 #include "host/image/image.hpp"
 #include "host/image/image_file.hpp"
 #include "host/pe/schedule_rays.hpp"
@@ -105,11 +106,14 @@ class GridRT final : public Contender {
       if (!device_->load(*built_)) throw std::runtime_error("the image does not load again");
     }
     if (part_ == Part::kProgram) {
-      const auto n = static_cast<std::ptrdiff_t>(rays_.size());
-#pragma omp parallel for num_threads(threads) if (threads > 1) schedule(dynamic, 1024)
+      constexpr std::size_t kPiece = 1024;
+      const auto n = static_cast<std::ptrdiff_t>((rays_.size() + kPiece - 1) / kPiece);
+#pragma omp parallel for num_threads(threads) if (threads > 1) schedule(dynamic)
       for (std::ptrdiff_t i = 0; i < n; ++i) {
-        const auto at = static_cast<std::size_t>(i);
-        segments_[at] = make_segment(lattice_, rays_[at]);
+        const std::size_t first = static_cast<std::size_t>(i) * kPiece;
+        const std::size_t count = std::min(kPiece, rays_.size() - first);
+        make_segments(lattice_, std::span(rays_).subspan(first, count),
+                      std::span(segments_).subspan(first, count));
       }
     }
     if (const auto done = device_->trace(segments_, Query::kClosestHit, hits_); !done) {
