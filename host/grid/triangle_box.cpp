@@ -54,6 +54,13 @@ bool TriangleBoxTest::meets(const QuarterBox& box) const {
     if (std::min({r[0][a], r[1][a], r[2][a]}) > box.half[a]) return false;
     if (std::max({r[0][a], r[1][a], r[2][a]}) < -box.half[a]) return false;
   }
+  // A vertex in the box spares the rest.
+  for (const glm::i64vec3& x : r) {
+    if (std::llabs(x.x) <= box.half.x && std::llabs(x.y) <= box.half.y &&
+        std::llabs(x.z) <= box.half.z) {
+      return true;
+    }
+  }
   if (narrow_ ? !plane_meets<std::int64_t>(box) : !plane_meets<Int128>(box)) return false;
   // Axis a x edge: the component along `a` is zero, so each test is two-dimensional.
   for (std::size_t e = 0; e < 3; ++e) {

@@ -62,6 +62,8 @@ Result<VoxelGrid> make_grid(const Lattice& lattice, std::size_t triangles,
 
 /// Puts every triangle into every voxel whose box, grown by the margin, it meets (a separating
 /// axis test in integers, so none is lost), by a counting sort. Degenerate triangles are left out.
-VoxelLists bin_triangles(const VoxelGrid& grid, std::span<const LatticeTriangle> triangles);
+/// On `threads` threads (0: one a core); the lists do not depend on their number.
+VoxelLists bin_triangles(const VoxelGrid& grid, std::span<const LatticeTriangle> triangles,
+                         int threads = 0);
 
 }  // namespace gridrt

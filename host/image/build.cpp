@@ -44,6 +44,7 @@ Result<LatticeScene> make_lattice_scene(const Scene& scene, const ImageOptions& 
   Cut& cut = out.cut;
   cut.mapping = options.mapping;
   cut.pes = options.pes;
+  cut.threads = options.threads;
   cut.layout = options.layout == protocol::Layout::kCompact ? protocol::Layout::kCompact
                                                             : protocol::Layout::kWide;
   cut.memory = memory_sizes(cut.layout);
@@ -70,7 +71,7 @@ Result<Image> pack_with_grid(const LatticeScene& scene, const VoxelGrid& grid) {
   Cut cut = scene.cut;
   cut.grid = grid;
   if (cut.mapping == Mapping::kMeasured) cut.mapping = Mapping::kBoxes;
-  cut.lists = bin_triangles(grid, scene.local.triangles);
+  cut.lists = bin_triangles(grid, scene.local.triangles, cut.threads);
   auto owners = deal_voxels(grid, cut.lists, cut.mapping, cut.pes);
   if (!owners) return std::unexpected(std::move(owners.error()));
   cut.owners = std::move(*owners);

@@ -28,7 +28,7 @@ class Chunker {
   Chunker(const LatticeScene& scene, const VoxelGrid& grid)
       : local_(scene.local),
         cut_(scene.cut),
-        lists_(bin_triangles(grid, scene.local.triangles)),
+        lists_(bin_triangles(grid, scene.local.triangles, scene.cut.threads)),
         triangle_index_(scene.local.triangles.size(), kNone),
         vertex_index_(scene.local.vertices.size(), kNone) {
     cut_.grid = grid;

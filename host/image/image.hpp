@@ -29,6 +29,7 @@ struct ImageOptions {
   std::optional<MemorySizes> memory =
       std::nullopt;        ///< of the device; none: the most that the layout allows
   bool with_scene = true;  ///< keep materials, normals, lights and camera in the image
+  int threads = 0;         ///< that build it; 0: one a core. The image does not depend on them
 };
 
 /// One section: its directory entry and its bytes.

@@ -138,7 +138,7 @@ Result<void> Search::run() {
     before = count;
     const auto grid = make_grid(cut.lattice, triangles.size(), count);
     if (!grid) continue;
-    MeasuredGrid measured{*grid, bin_triangles(*grid, triangles), {}, {}};
+    MeasuredGrid measured{*grid, bin_triangles(*grid, triangles, cut.threads), {}, {}};
     if (!may_fit(cut, measured.grid, measured.lists)) continue;
     measured.load = sample_.measure(measured.grid, measured.lists);
     find_shares(triangles, cut.lattice, measured);

@@ -29,6 +29,7 @@ struct Cut {
   int pes = 1;
   protocol::Layout layout = protocol::Layout::kWide;
   MemorySizes memory = memory_sizes(protocol::Layout::kWide);
+  int threads = 0;  ///< that cut it; 0: one a core
 };
 
 /// Packs all sections but Scene, and the header. Errors: kLimit if layout or memory cannot hold

@@ -1,5 +1,6 @@
 // Binning loses nothing: every voxel, and every half of one, whose box grown by the margin meets a
 // triangle refers to it. The truth clips the triangle to the box in rationals.
+#include <algorithm>
 #include <cstdio>
 #include <map>
 
@@ -151,6 +152,35 @@ TEST(Binning, TrianglesInFacesAreFoundFromBothSides) {
                 extra);
   }
   std::printf("binning on faces: %zu references, %zu beyond need\n", references, extra);
+}
+
+TEST(Binning, ListsDoNotDependOnTheNumberOfThreads) {
+  Random random(52);
+  for (const Scene& scene :
+       {soup(9000, 6.0, random), sheet(50, 0.3, random), soup(3, 1.0, random)}) {
+    const Lattice lattice = make_lattice(scene.positions, scene.triangles, kDefaultBits).value();
+    std::vector<LatticeTriangle> triangles;
+    for (const auto& t : scene.triangles) {
+      LatticeTriangle& q = triangles.emplace_back();
+      for (std::size_t k = 0; k < 3; ++k) q.v[k] = snap(lattice, scene.positions[t[k]]);
+    }
+    const VoxelGrid grid = make_grid(lattice, triangles.size(), {}).value();
+    const VoxelLists one = bin_triangles(grid, triangles, 1);
+    for (const int threads : {0, 2, 3, 8}) {
+      const VoxelLists many = bin_triangles(grid, triangles, threads);
+      EXPECT_EQ(many.first, one.first);
+      EXPECT_TRUE(std::ranges::equal(many.references, one.references,
+                                     [](const VoxelReference& a, const VoxelReference& b) {
+                                       return a.triangle == b.triangle && a.octants == b.octants;
+                                     }));
+    }
+    for (std::size_t cell = 0; cell < grid.cells(); ++cell) {
+      EXPECT_TRUE(
+          std::is_sorted(one.references.begin() + static_cast<std::ptrdiff_t>(one.first[cell]),
+                         one.references.begin() + static_cast<std::ptrdiff_t>(one.first[cell + 1]),
+                         [](const auto& a, const auto& b) { return a.triangle < b.triangle; }));
+    }
+  }
 }
 
 }  // namespace

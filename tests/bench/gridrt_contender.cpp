@@ -57,6 +57,7 @@ class GridRT final : public Contender {
     ImageOptions options;
     options.with_scene = false;
     options.bits = bits_;
+    options.threads = threads;
     open(threads);
     const Image image = valid(build_image(scene, options_for(options, device_->capabilities())));
     lattice_ = image.lattice();
