@@ -82,15 +82,15 @@ Result<void> BulkLink::start() {
   libusb_clear_halt(handle_, usb::kBulkIn);
   if (auto added = add_pieces(out_, usb::kBulkOut); !added) return added;
   if (auto added = add_pieces(in_, usb::kBulkIn); !added) return added;
-  for (Piece& piece : in_) {
-    if (auto submitted = submit(piece); !submitted) return submitted;
+  for (Piece& piece : in_.pieces) {
+    if (auto submitted = submit(piece, in_); !submitted) return submitted;
   }
   return {};
 }
 
-Result<void> BulkLink::add_pieces(std::deque<Piece>& pieces, std::uint8_t endpoint) {
+Result<void> BulkLink::add_pieces(Pipe& pipe, std::uint8_t endpoint) {
   for (std::size_t i = 0; i < options_.transfers; ++i) {
-    Piece& piece = pieces.emplace_back(handle_, options_.transfer_bytes);
+    Piece& piece = pipe.pieces.emplace_back(handle_, options_.transfer_bytes);
     piece.transfer.reset(libusb_alloc_transfer(0));
     if (!piece.transfer) return fail(ErrorKind::kTransport, "no memory for USB transfers");
     const std::span<std::byte> bytes = piece.memory.bytes();
@@ -104,10 +104,10 @@ Result<void> BulkLink::add_pieces(std::deque<Piece>& pieces, std::uint8_t endpoi
 BulkLink::~BulkLink() {
   const auto in_flight = [&] {
     const auto flies = [](const Piece& piece) { return piece.state == State::kInFlight; };
-    return std::ranges::any_of(out_, flies) || std::ranges::any_of(in_, flies);
+    return std::ranges::any_of(out_.pieces, flies) || std::ranges::any_of(in_.pieces, flies);
   };
-  for (std::deque<Piece>* pieces : {&out_, &in_}) {
-    for (Piece& piece : *pieces) {
+  for (Pipe* pipe : {&out_, &in_}) {
+    for (Piece& piece : pipe->pieces) {
       if (piece.state == State::kInFlight) libusb_cancel_transfer(piece.transfer.get());
     }
   }
@@ -117,8 +117,8 @@ BulkLink::~BulkLink() {
     libusb_handle_events_timeout_completed(context_, &time, nullptr);
   }
   // The kernel may still write to a transfer that never came back: better lost than used again.
-  for (std::deque<Piece>* pieces : {&out_, &in_}) {
-    for (Piece& piece : *pieces) {
+  for (Pipe* pipe : {&out_, &in_}) {
+    for (Piece& piece : pipe->pieces) {
       if (piece.state == State::kInFlight) static_cast<void>(piece.transfer.release());
     }
   }
@@ -138,10 +138,11 @@ Error BulkLink::gone() const {
   return usb_error::unplugged();
 }
 
-Result<void> BulkLink::submit(Piece& piece) {
+Result<void> BulkLink::submit(Piece& piece, const Pipe& pipe) {
   const int code = libusb_submit_transfer(piece.transfer.get());
   if (code == LIBUSB_SUCCESS) {  // it cannot finish before events are handled
     piece.taken = 0;
+    piece.clears = pipe.clears;
     piece.state = State::kInFlight;
     return {};
   }
@@ -149,23 +150,27 @@ Result<void> BulkLink::submit(Piece& piece) {
   return std::unexpected(usb_error::failing("to the board", libusb_strerror(code), 1));
 }
 
-Result<void> BulkLink::settle(Piece& piece, int& failures) {
+Result<void> BulkLink::settle(const Piece& piece, Pipe& pipe) {
   const libusb_transfer& transfer = *piece.transfer;
   if (transfer.status == LIBUSB_TRANSFER_COMPLETED) {
-    failures = 0;
+    pipe.failures = 0;
     return {};
   }
   if (transfer.status == LIBUSB_TRANSFER_NO_DEVICE) return std::unexpected(gone());
   if (transfer.status == LIBUSB_TRANSFER_CANCELLED)
     return std::unexpected(usb_error::interrupted());
-  if (++failures >= kMostFailures) {
+  // One halt ends all transfers that were under way.
+  const bool stalled = transfer.status == LIBUSB_TRANSFER_STALL;
+  if (stalled && piece.clears != pipe.clears) return {};
+  if (++pipe.failures >= kMostFailures) {
     const bool in = (transfer.endpoint & LIBUSB_ENDPOINT_IN) != 0;
     return std::unexpected(usb_error::failing(in ? "from the board" : "to the board",
-                                              status_text(transfer.status), failures));
+                                              status_text(transfer.status), pipe.failures));
   }
   // The bytes of that transfer are lost; the frames that they belonged to are sent again.
-  if (transfer.status == LIBUSB_TRANSFER_STALL &&
-      libusb_clear_halt(handle_, transfer.endpoint) == LIBUSB_ERROR_NO_DEVICE) {
+  if (!stalled) return {};
+  ++pipe.clears;
+  if (libusb_clear_halt(handle_, transfer.endpoint) == LIBUSB_ERROR_NO_DEVICE) {
     return std::unexpected(gone());
   }
   return {};
@@ -180,13 +185,13 @@ Result<void> BulkLink::wait_for_events(milliseconds longest) {
 }
 
 bool BulkLink::nothing_coming() const {
-  return std::ranges::none_of(in_,
+  return std::ranges::none_of(in_.pieces,
                               [](const Piece& piece) { return piece.state == State::kInFlight; });
 }
 
 /// A board that cannot get rid of its answers takes no more questions: makes room for them.
 Result<void> BulkLink::put_by() {
-  Piece& piece = in_[next_in_];
+  Piece& piece = in_.pieces[in_.next];
   const std::span<std::byte> came =
       piece.memory.bytes().first(static_cast<std::size_t>(piece.transfer->actual_length));
   const std::span<std::byte> left = came.subspan(piece.taken);
@@ -194,9 +199,9 @@ Result<void> BulkLink::put_by() {
     return std::unexpected(usb_error::endless(early_.size()));
   }
   early_.insert(early_.end(), left.begin(), left.end());
-  next_in_ = (next_in_ + 1) % in_.size();
-  if (auto settled = settle(piece, in_failures_); !settled) return settled;
-  return submit(piece);
+  in_.next = (in_.next + 1) % in_.pieces.size();
+  if (auto settled = settle(piece, in_); !settled) return settled;
+  return submit(piece, in_);
 }
 
 Result<void> BulkLink::wait_for_room(Piece& piece) {
@@ -211,27 +216,36 @@ Result<void> BulkLink::wait_for_room(Piece& piece) {
           static_cast<std::size_t>(piece.transfer->length), options_.patience));
     }
   }
-  if (piece.state == State::kIdle) return {};
-  piece.state = State::kIdle;
-  return settle(piece, out_failures_);
+  return tend_out();
+}
+
+/// A halt of the pipe is cleared as soon as it is seen, not when its transfer is used again: the
+/// host may be waiting for an answer to what was lost.
+Result<void> BulkLink::tend_out() {
+  for (Piece& piece : out_.pieces) {
+    if (piece.state != State::kDone) continue;
+    piece.state = State::kIdle;
+    if (auto settled = settle(piece, out_); !settled) return settled;
+  }
+  return {};
 }
 
 Result<void> BulkLink::send(std::span<const std::byte> bytes) {
   while (!bytes.empty()) {
-    Piece& piece = out_[next_out_];
+    Piece& piece = out_.pieces[out_.next];
     if (auto room = wait_for_room(piece); !room) return room;
     const std::size_t size = std::min(bytes.size(), piece.memory.bytes().size());
     std::ranges::copy(bytes.first(size), piece.memory.bytes().begin());
     piece.transfer->length = static_cast<int>(size);
-    if (auto submitted = submit(piece); !submitted) return submitted;
-    next_out_ = (next_out_ + 1) % out_.size();
+    if (auto submitted = submit(piece, out_); !submitted) return submitted;
+    out_.next = (out_.next + 1) % out_.pieces.size();
     bytes = bytes.subspan(size);
   }
   return {};
 }
 
 Result<void> BulkLink::flush() {
-  for (Piece& piece : out_) {
+  for (Piece& piece : out_.pieces) {
     if (auto done = wait_for_room(piece); !done) return done;
   }
   return {};
@@ -250,14 +264,14 @@ Result<std::size_t> BulkLink::receive(std::span<std::byte> out, milliseconds tim
   const auto end = Clock::now() + timeout;
   std::size_t given = 0;
   for (;;) {
-    Piece& piece = in_[next_in_];
+    Piece& piece = in_.pieces[in_.next];
     if (piece.state == State::kInFlight) {
       // What there is is worth more than what may come.
       const auto left = std::chrono::ceil<milliseconds>(end - Clock::now());
       if (given > 0 || left <= milliseconds(0)) return given;
-      if (auto waited = wait_for_events(std::min(left, kSlice)); !waited) {
-        return std::unexpected(waited.error());
-      }
+      Result<void> waited = wait_for_events(std::min(left, kSlice));
+      if (waited) waited = tend_out();
+      if (!waited) return std::unexpected(waited.error());
       continue;
     }
     const auto came = static_cast<std::size_t>(piece.transfer->actual_length);
@@ -267,9 +281,9 @@ Result<std::size_t> BulkLink::receive(std::span<std::byte> out, milliseconds tim
     piece.taken += size;
     given += size;
     if (piece.taken == came) {
-      const Result<void> settled = settle(piece, in_failures_);
-      const Result<void> again = settled ? submit(piece) : settled;
-      if (again) next_in_ = (next_in_ + 1) % in_.size();
+      const Result<void> settled = settle(piece, in_);
+      const Result<void> again = settled ? submit(piece, in_) : settled;
+      if (again) in_.next = (in_.next + 1) % in_.pieces.size();
       // The bytes before a failure count; the next call finds the failure again.
       if (!again && given == 0) return std::unexpected(again.error());
       if (!again) return given;

@@ -58,18 +58,26 @@ class BulkLink {
     UsbMemory memory;
     LibusbTransfer transfer;
     State state = State::kIdle;
-    std::size_t taken = 0;  ///< of what came in
+    std::size_t taken = 0;     ///< of what came in
+    std::uint64_t clears = 0;  ///< of its pipe, when it was submitted
+  };
+  struct Pipe {
+    std::deque<Piece> pieces;
+    std::size_t next = 0;      ///< the oldest piece: used next, or the one whose bytes come next
+    int failures = 0;          ///< in a row
+    std::uint64_t clears = 0;  ///< times that a halt was cleared
   };
 
   BulkLink(libusb_context* context, libusb_device_handle* handle, std::string port,
            const UsbOptions& options);
   Result<void> start();
-  Result<void> add_pieces(std::deque<Piece>& pieces, std::uint8_t endpoint);
-  Result<void> submit(Piece& piece);
+  Result<void> add_pieces(Pipe& pipe, std::uint8_t endpoint);
+  Result<void> submit(Piece& piece, const Pipe& pipe);
   Result<void> wait_for_events(std::chrono::milliseconds longest);
   Result<void> wait_for_room(Piece& piece);
   /// Takes note of how a transfer ended; an error only if the link cannot go on.
-  Result<void> settle(Piece& piece, int& failures);
+  Result<void> settle(const Piece& piece, Pipe& pipe);
+  Result<void> tend_out();
   Result<void> put_by();
   [[nodiscard]] bool nothing_coming() const;
   [[nodiscard]] Error gone() const;
@@ -80,12 +88,8 @@ class BulkLink {
   std::string port_;
   UsbOptions options_;
   bool claimed_ = false;
-  std::deque<Piece> out_;
-  std::deque<Piece> in_;
-  std::size_t next_out_ = 0;      // the piece that is used next, the oldest one
-  std::size_t next_in_ = 0;       // the piece whose bytes come next
-  int out_failures_ = 0;          // in a row
-  int in_failures_ = 0;           // in a row
+  Pipe out_;
+  Pipe in_;
   std::vector<std::byte> early_;  // came while send() waited and no transfer was free to hold it
   std::size_t early_taken_ = 0;
 };
