@@ -1,11 +1,6 @@
 #include "hal/sim/boards.hpp"
 
-#include <Vgridrt_b17x4.h>
-#ifdef GRIDRT_SIM_TEST_BOARDS
-#include <Vgridrt_b12x2.h>
-#include <Vgridrt_stall.h>
-#endif
-
+#include "gridrt_sim_boards.hpp"
 #include "hal/sim/verilated_board.hpp"
 
 namespace gridrt {
@@ -32,20 +27,17 @@ Result<std::unique_ptr<SimBoard>> make(const SimBoardOptions& options) {
 }  // namespace
 
 std::vector<std::string_view> sim_boards() {
-#ifdef GRIDRT_SIM_TEST_BOARDS
-  return {"b17x4", "b12x2", "stall"};
-#else
-  return {"b17x4"};
-#endif
+#define GRIDRT_USE(name) #name,
+  return {GRIDRT_SIM_BOARDS(GRIDRT_USE)};
+#undef GRIDRT_USE
 }
 
 Result<std::unique_ptr<SimBoard>> make_sim_board(std::string_view name,
                                                  const SimBoardOptions& options) {
-  if (name == "b17x4") return make<Vgridrt_b17x4>(options);
-#ifdef GRIDRT_SIM_TEST_BOARDS
-  if (name == "b12x2") return make<Vgridrt_b12x2>(options);
-  if (name == "stall") return make<Vgridrt_stall>(options);
-#endif
+#define GRIDRT_USE(board) \
+  if (name == #board) return make<Vgridrt_##board>(options);
+  GRIDRT_SIM_BOARDS(GRIDRT_USE)
+#undef GRIDRT_USE
   std::string known;
   for (const std::string_view board : sim_boards()) {
     known += ' ';

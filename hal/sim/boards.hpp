@@ -11,9 +11,10 @@
 
 namespace gridrt {
 
-/// Their names, the default first: "b17x4" has B = 17 and four PEs. For tests, and in builds with
-/// tests only: "b12x2" has B = 12 and two PEs; "stall" is as b17x4, but its streams pause at random
-/// and its assertions are checked (one that fails ends the program).
+/// Their names, the default first: "b17x4" has B = 17 and four PEs. In builds with tests also
+/// "b12x2" with B = 12 and two PEs, and "stall", which is as b17x4, but its streams pause at random
+/// and its assertions are checked (one that fails ends the program). GRIDRT_SIM_ALL_BOARDS: all of
+/// B = 12, 14, 17 with 1, 2 and 4 PEs.
 std::vector<std::string_view> sim_boards();
 
 struct SimBoardOptions {
