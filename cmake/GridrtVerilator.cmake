@@ -1,12 +1,13 @@
 # Simulation of RTL: Verilator makes a C++ class of a module, once for each choice of parameters.
 #
 # gridrt_verilated(NAME TOP module [PREFIX class] [PARAMETERS B=17 ...] [DEFINES MACRO ...]
-#                  [FILES file.sv ...] [FIRMWARE board] [TRACE] [FAST])
+#                  [FILES file.sv ...] [FIRMWARE board] [LUNA] [TRACE] [FAST])
 #   Static library NAME with the class V<module>, or that of PREFIX (#include <Vmodule.h>). Modules
 #   below rtl/ are found by name and packages are read always; FILES names what lies elsewhere. Each
 #   parameter is a macro for users of the library, too: GRIDRT_RTL_B=17. GRIDRT_ASSERT is defined,
 #   so that the assertions of the RTL are checked. Warnings are errors. TRACE: waves as FST.
 #   FIRMWARE: that board's image (firmware/soft_core) is in the soft core's memory.
+#   LUNA: with the USB device (cmake/GridrtLuna.cmake).
 #   FAST: as fast as it gets, without assertions, registers without reset start as zeros.
 #
 # gridrt_rtl_bench(NAME TOP module SOURCES bench.cpp ... [LINK library ...] [and all of the above])
@@ -21,6 +22,9 @@ find_package(Python3 3.11 REQUIRED COMPONENTS Interpreter)
 find_package(Threads REQUIRED)
 find_package(ZLIB REQUIRED)
 include(GridrtPicorv32)
+if(GRIDRT_BUILD_TESTS)
+  include(GridrtLuna)
+endif()
 
 execute_process(COMMAND ${GRIDRT_VERILATOR} --getenv VERILATOR_ROOT
   OUTPUT_VARIABLE GRIDRT_VERILATOR_ROOT OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
@@ -36,6 +40,7 @@ list(FILTER GRIDRT_RTL_PACKAGES INCLUDE REGEX "_pkg\\.sv$")
 list(REMOVE_ITEM GRIDRT_RTL_PACKAGES ${PROJECT_SOURCE_DIR}/rtl/gridrt_pkg.sv)
 set(GRIDRT_RTL_PACKAGES
   ${PROJECT_BINARY_DIR}/generated/gridrt_protocol_pkg.sv
+  ${PROJECT_BINARY_DIR}/generated/gridrt_usb_pkg.sv
   ${PROJECT_SOURCE_DIR}/rtl/gridrt_pkg.sv
   ${GRIDRT_RTL_PACKAGES})
 set(GRIDRT_RTL_MODULES ${rtl_files})
@@ -56,7 +61,7 @@ target_compile_options(gridrt_verilator PRIVATE -w -O2)
 target_link_libraries(gridrt_verilator PUBLIC Threads::Threads ZLIB::ZLIB)
 
 function(gridrt_verilated name)
-  cmake_parse_arguments(ARG "TRACE;FAST" "TOP;PREFIX;FIRMWARE" "PARAMETERS;DEFINES;FILES" ${ARGN})
+  cmake_parse_arguments(ARG "TRACE;FAST;LUNA" "TOP;PREFIX;FIRMWARE" "PARAMETERS;DEFINES;FILES" ${ARGN})
   set(prefix V${ARG_TOP})
   if(ARG_PREFIX)
     set(prefix ${ARG_PREFIX})
@@ -84,6 +89,9 @@ function(gridrt_verilated name)
       -I${PROJECT_BINARY_DIR}/firmware/soft_core/${ARG_FIRMWARE})
   endif()
   list(APPEND flags -y ${GRIDRT_PICORV32_FOLDER} ${PROJECT_SOURCE_DIR}/rtl/soc/picorv32.vlt)
+  if(ARG_LUNA)
+    list(APPEND flags -y ${GRIDRT_LUNA_FOLDER} ${PROJECT_SOURCE_DIR}/rtl/usb/luna.vlt)
+  endif()
   foreach(search IN LISTS GRIDRT_RTL_FOLDERS)
     list(APPEND flags -y ${search})
   endforeach()
@@ -113,21 +121,26 @@ function(gridrt_verilated name)
   if(ARG_FIRMWARE)
     add_dependencies(${name} gridrt_firmware_image_${ARG_FIRMWARE})
   endif()
+  if(ARG_LUNA)
+    add_dependencies(${name} gridrt_luna)
+  endif()
 endfunction()
 
 function(gridrt_rtl_bench name)
-  cmake_parse_arguments(ARG "TRACE" "TOP" "SOURCES;LINK;PARAMETERS;DEFINES;FILES;FIRMWARE" ${ARGN})
+  cmake_parse_arguments(ARG "TRACE;LUNA" "TOP" "SOURCES;LINK;PARAMETERS;DEFINES;FILES;FIRMWARE" ${ARGN})
   set(model TOP ${ARG_TOP})
   foreach(word PARAMETERS DEFINES FILES FIRMWARE)
     if(ARG_${word})
       list(APPEND model ${word} ${ARG_${word}})
     endif()
   endforeach()
-  if(ARG_TRACE)
-    list(APPEND model TRACE)
-  endif()
+  foreach(word TRACE LUNA)
+    if(ARG_${word})
+      list(APPEND model ${word})
+    endif()
+  endforeach()
   string(MAKE_C_IDENTIFIER "rtl_${ARG_TOP}_${ARG_PARAMETERS}" library)
-  if(ARG_DEFINES OR ARG_FILES OR ARG_FIRMWARE OR ARG_TRACE)
+  if(ARG_DEFINES OR ARG_FILES OR ARG_FIRMWARE OR ARG_TRACE OR ARG_LUNA)
     string(SHA256 hash "${model}")
     string(SUBSTRING ${hash} 0 8 hash)
     string(APPEND library _${hash})

@@ -8,6 +8,7 @@ import unittest
 
 SETUP = pathlib.Path(__file__).resolve().parents[2] / "tools" / "setup"
 VERSIONS = ("# comment\n[build]\ng++=4:12.2.*\ncmake=3.25.*\n[build-pypi]\nsoft-core=1.0\n[test]\nclang-19=1:19.1.7*\n"
+            "[test-pypi]\nusb-core=2.0\n"
             "[hardware]\ncmake=3.25.*\n[hardware-pypi]\nyowasp-yosys=0.70\nz3-solver=5.4\n")
 INSTALLED = "g++ installed 4:12.2.0-3\ncmake installed 3.25.1-1\n"
 OFFERS = """     cmake |   3.26.0-1 | x y Packages
@@ -59,7 +60,7 @@ class Setup(unittest.TestCase):
         self.write("state/offers", OFFERS)
         self.write("state/log", "")
         self.write("state/python", PYTHON)
-        self.write("state/pip", "soft-core==1.0\n")
+        self.write("state/pip", "soft-core==1.0\nusb-core==2.0\n")
         environment = self.root / "build" / "hardware" / "bin"
         environment.mkdir(parents=True)
         (environment / "python").write_text(PYTHON, encoding="utf-8")

@@ -1,7 +1,8 @@
 # No module of rtl/ has a warning, taken as a design of its own.
 add_test(NAME rtl_lint COMMAND ${Python3_EXECUTABLE} -B ${CMAKE_CURRENT_LIST_DIR}/lint_test.py
   --verilator ${GRIDRT_VERILATOR} --protocol ${PROJECT_BINARY_DIR}/generated/gridrt_protocol_pkg.sv
-  --library ${GRIDRT_PICORV32_FOLDER} ${PROJECT_SOURCE_DIR}/rtl)
+  --protocol ${PROJECT_BINARY_DIR}/generated/gridrt_usb_pkg.sv
+  --library ${GRIDRT_PICORV32_FOLDER} --library ${GRIDRT_LUNA_FOLDER} ${PROJECT_SOURCE_DIR}/rtl)
 # Illegal parameters are refused.
 add_test(NAME rtl_parameters COMMAND ${Python3_EXECUTABLE} -B
   ${CMAKE_CURRENT_LIST_DIR}/parameters_test.py --verilator ${GRIDRT_VERILATOR}

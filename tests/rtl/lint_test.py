@@ -36,8 +36,10 @@ def lint(verilator, flags, top, file):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("--verilator", default="verilator")
-    parser.add_argument("--protocol", type=pathlib.Path, help="generated package")
-    parser.add_argument("--library", type=pathlib.Path, help="folder of somebody else's modules")
+    parser.add_argument("--protocol", type=pathlib.Path, action="append", default=[],
+                        help="generated package")
+    parser.add_argument("--library", type=pathlib.Path, action="append", default=[],
+                        help="folder of somebody else's modules")
     parser.add_argument("folder", type=pathlib.Path)
     options = parser.parse_args()
 
@@ -48,9 +50,9 @@ def main():
     if not modules:
         sys.exit(f"lint: no module below {options.folder}")
     flags = [word for folder in sorted({f.parent for f in files}) for word in ("-y", str(folder))]
-    flags += ["-y", str(options.library)] if options.library else []
+    flags += [word for folder in options.library for word in ("-y", str(folder))]
     flags += [str(f) for f in options.folder.rglob("*.vlt")]
-    flags += [str(options.protocol)] if options.protocol else []
+    flags += [str(file) for file in options.protocol]
     flags += [str(f) for f in packages]
 
     problems = 0

@@ -39,6 +39,7 @@ CASES = [
     ("gridrt_watch", {"HANG_CLOCKS": 1000}, "HANG_CLOCKS must be"),
     ("gridrt_watch", {"ALIVE_CLOCKS": 1048576}, "ALIVE_CLOCKS at least"),
     ("gridrt_cpu_ram", {"WORDS": 5000}, "WORDS must be"),
+    ("gridrt_usb_tail", {"PAUSE": 1}, "PAUSE must be"),
     ("gridrt_watch", {"HANG_CLOCKS": 1024, "ALIVE_CLOCKS": 2048}, None),
     ("gridrt_engine", {}, None),
     ("gridrt_engine", {"B": 4}, None),

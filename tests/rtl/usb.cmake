@@ -1,0 +1,5 @@
+# The USB block between a UTMI PHY and the board: a USB host on one side, a board in software on the
+# other.
+gridrt_rtl_bench(rtl_usb TOP gridrt_usb LUNA SOURCES usb_block_test.cpp
+                 LINK gridrt_board_model gridrt_firmware_vectors_b17x4 gridrt_pe gridrt_image
+                 gridrt_hal)
