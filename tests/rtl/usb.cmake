@@ -3,3 +3,4 @@
 gridrt_rtl_bench(rtl_usb TOP gridrt_usb LUNA SOURCES usb_block_test.cpp
                  LINK gridrt_board_model gridrt_firmware_vectors_b17x4 gridrt_pe gridrt_image
                  gridrt_hal)
+gridrt_rtl_bench(rtl_usb_tail TOP gridrt_usb_tail PARAMETERS PAUSE=30 SOURCES usb_tail_bench.cpp)
