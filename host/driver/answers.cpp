@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "host/grid/intersect.hpp"
+#include "host/grid/intersect_narrow.hpp"
 
 namespace gridrt {
 
@@ -12,6 +12,7 @@ Result<Answers> Answers::make(const Image& image) {
   if (!triangles) return std::unexpected(std::move(triangles.error()));
   Answers answers;
   answers.triangles_ = std::move(*triangles);
+  answers.narrow_ = image.header.bits <= kMaxCompactBits;
   if (image.header.chunks > 1) return answers;
   answers.local_ids_.assign(image.header.triangles, kNoTriangle);
   for (std::size_t i = 0; i < answers.triangles_.global_ids.size(); ++i) {
@@ -34,8 +35,10 @@ std::uint32_t Answers::local_id(std::uint32_t global_id) const {
 }
 
 std::optional<Hit> Answers::hit(const Segment& segment, std::uint32_t id) const {
+  const LatticeTriangle& triangle = triangles_.triangles[id];
   const std::optional<ExactHit> exact =
-      intersect_exact(segment.p0, segment.p1, triangles_.triangles[id]);
+      narrow_ ? intersect_narrow(segment.p0, segment.p1 - segment.p0, EdgeTriangle{triangle})
+              : intersect_exact(segment.p0, segment.p1, triangle);
   if (!exact) return std::nullopt;
   const HitParameters p = hit_parameters(segment, *exact);
   return Hit{static_cast<std::int32_t>(triangles_.global_ids[id]), p.t, p.u, p.v};

@@ -26,6 +26,7 @@ class Answers {
 
  private:
   ImageTriangles triangles_;
+  bool narrow_ = true;                    ///< 64 bits hold every product
   std::vector<std::uint32_t> local_ids_;  ///< by global id; empty for a chunk, to spare its size
 };
 
