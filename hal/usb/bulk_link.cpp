@@ -119,7 +119,8 @@ BulkLink::~BulkLink() {
   // The kernel may still write to a transfer that never came back: better lost than used again.
   for (Pipe* pipe : {&out_, &in_}) {
     for (Piece& piece : pipe->pieces) {
-      if (piece.state == State::kInFlight) static_cast<void>(piece.transfer.release());
+      if (piece.state != State::kInFlight) continue;
+      [[maybe_unused]] const libusb_transfer* lost = piece.transfer.release();
     }
   }
   if (claimed_) libusb_release_interface(handle_, usb::kBulkInterface);

@@ -217,7 +217,7 @@ Result<std::variant<std::pair<Options, Action>, PrintAndExit>> parse(int argc,
   app.footer(std::string(exit_code_help()));
   auto parsed = parse_command_line(app, argc, argv);
   if (!parsed) return std::unexpected(std::move(parsed.error()));
-  if (*parsed) return std::move(**parsed);
+  if (const auto& exit = *parsed) return *exit;
   if (version) return PrintAndExit{version_text(kProgram)};
   if (action == nullptr) {
     return fail(ErrorKind::kUsage, "nothing to do",

@@ -29,8 +29,9 @@ Result<void> synchronise(Connection& connection, std::chrono::milliseconds limit
     while (std::chrono::steady_clock::now() < end) {
       const Result<std::optional<Frame>> frame = connection.receive(patience);
       if (!frame) return std::unexpected(frame.error());
-      if (!*frame) break;
-      if ((*frame)->type() == FrameType::kNoOp && (*frame)->header.sequence == sequence) return {};
+      const std::optional<Frame>& got = *frame;
+      if (!got) break;
+      if (got->type() == FrameType::kNoOp && got->header.sequence == sequence) return {};
     }
   }
   return fail(ErrorKind::kTimeout, "the board takes frames but answers none",

@@ -94,8 +94,8 @@ std::vector<SegmentKernel> segment_kernels() {
 }
 
 void make_segments(const Lattice& lattice, std::span<const Ray> rays, std::span<Segment> segments) {
-  static const SegmentKernel kWidest = segment_kernels().front();
-  kWidest.make(lattice, rays, segments);
+  static const SegmentKernel widest = segment_kernels().front();
+  widest.make(lattice, rays, segments);
 }
 
 }  // namespace gridrt

@@ -92,12 +92,13 @@ class Packet {
   }
 
   struct Voxel {
-    const std::uint32_t* head;
-    int a, b;
+    const std::uint32_t* head = nullptr;
+    int a = 0;
+    int b = 0;
   };
   struct Slab {
     std::size_t count = 0;
-    std::array<Voxel, Frustum::kMostVoxels> voxels;
+    std::array<Voxel, Frustum::kMostVoxels> voxels{};
   };
 
   /// The voxels with triangles in the next slab that has any where the rays are, from `slab` on.
@@ -225,7 +226,7 @@ class Packet {
     const std::optional<HitKey> found = key(lane, place);
     if (!found) return;
     HitKey nearest = *found;
-    if (best != kNoPlace) nearest = std::min(nearest, *key(lane, best));
+    if (best != kNoPlace) nearest = std::min(nearest, key(lane, best).value_or(nearest));
     if (nearest.id == id) best_[lane] = place;
     // Quotients up to this one, and strictly smaller ones.
     limit_[lane] = std::min(shortest_[lane], static_cast<float>(nearest.quotient + 1) * 0x1p-24F);
