@@ -13,7 +13,8 @@ if(GRIDRT_SANITIZE)
   target_compile_options(gridrt_flags INTERFACE
     -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(gridrt_flags INTERFACE -fsanitize=address,undefined)
-  target_sources(gridrt_flags INTERFACE ${CMAKE_CURRENT_LIST_DIR}/leaks.cpp)
+  target_sources(gridrt_flags INTERFACE  # once a program
+    $<$<STREQUAL:$<TARGET_PROPERTY:TYPE>,EXECUTABLE>:${CMAKE_CURRENT_LIST_DIR}/leaks.cpp>)
 endif()
 
 # gridrt_library(NAME sources... [LINK public libraries...] [PRIVATE libraries...])

@@ -10,7 +10,7 @@
 #include "hal/fault_injector.hpp"
 #include "host/pe/software_device.hpp"
 #include "tests/unit/usb_fake_bus.hpp"
-#include "virtual/usb_function.hpp"
+#include "tools/virtual/usb_function.hpp"
 
 namespace gridrt::fake {
 

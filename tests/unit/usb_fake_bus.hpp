@@ -8,7 +8,7 @@
 #include <random>
 #include <string>
 
-#include "virtual/usb_function.hpp"
+#include "tools/virtual/usb_function.hpp"
 
 struct libusb_transfer;
 

@@ -7,10 +7,10 @@
 #include <unistd.h>
 
 #include "tests/unit/usb_board.hpp"
-#include "virtual/listen.hpp"
-#include "virtual/redirection.hpp"
-#include "virtual/usbip.hpp"
-#include "virtual/usbip_messages.hpp"
+#include "tools/virtual/listen.hpp"
+#include "tools/virtual/redirection.hpp"
+#include "tools/virtual/usbip.hpp"
+#include "tools/virtual/usbip_messages.hpp"
 
 namespace gridrt {
 namespace {

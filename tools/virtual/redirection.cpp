@@ -1,4 +1,4 @@
-#include "virtual/redirection.hpp"
+#include "tools/virtual/redirection.hpp"
 
 #include <algorithm>
 #include <cerrno>

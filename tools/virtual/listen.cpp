@@ -1,4 +1,9 @@
-#include "virtual/listen.hpp"
+#include "tools/virtual/listen.hpp"
+
+#include <cerrno>
+#include <charconv>
+#include <cstdint>
+#include <cstring>
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
@@ -7,11 +12,6 @@
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
-
-#include <cerrno>
-#include <charconv>
-#include <cstdint>
-#include <cstring>
 
 namespace gridrt {
 namespace {
@@ -76,8 +76,8 @@ Result<Socket> accept_one(const Socket& listening, std::chrono::milliseconds tim
   const int file = accept4(listening.file(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
   if (file < 0) {
     if (errno == EAGAIN || errno == EINTR || errno == ECONNABORTED) return Socket();
-    return fail(ErrorKind::kFile, std::string("a connection was not accepted: ") +
-                                      std::strerror(errno));
+    return fail(ErrorKind::kFile,
+                std::string("a connection was not accepted: ") + std::strerror(errno));
   }
   const int on = 1;
   setsockopt(file, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);  // no such thing on a Unix socket

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "hal/error.hpp"
-#include "virtual/usb_function.hpp"
-#include "virtual/usbip_messages.hpp"
+#include "tools/virtual/usb_function.hpp"
+#include "tools/virtual/usbip_messages.hpp"
 
 namespace gridrt {
 
@@ -35,7 +35,9 @@ class UsbIp {
   bool serve_waiting();
   bool serve_one(const usbip::Urb& urb);
   Result<bool> move_bytes(std::chrono::milliseconds patience);
-  void send(std::span<const std::byte> bytes) { out_.insert(out_.end(), bytes.begin(), bytes.end()); }
+  void send(std::span<const std::byte> bytes) {
+    out_.insert(out_.end(), bytes.begin(), bytes.end());
+  }
 
   UsbFunction& function_;
   int socket_;

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "hal/error.hpp"
-#include "virtual/usb_function.hpp"
+#include "tools/virtual/usb_function.hpp"
 
 struct usbredirparser;
 

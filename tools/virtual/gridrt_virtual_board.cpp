@@ -5,18 +5,18 @@
 #include <iterator>
 #include <span>
 #include <string>
-#include <vector>
 #include <utility>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "host/app/exit_code.hpp"
-#include "virtual/board.hpp"
-#include "virtual/listen.hpp"
-#include "virtual/redirection.hpp"
-#include "virtual/usb_function.hpp"
-#include "virtual/usbip.hpp"
+#include "tools/virtual/board.hpp"
+#include "tools/virtual/listen.hpp"
+#include "tools/virtual/redirection.hpp"
+#include "tools/virtual/usb_function.hpp"
+#include "tools/virtual/usbip.hpp"
 
 namespace gridrt {
 namespace {
@@ -62,9 +62,9 @@ Result<void> run(Options options) {
   }
   Result<VirtualBoard> board = make_virtual_board(options.board);
   if (!board) return std::unexpected(std::move(board.error()));
-  UsbFunction function(*board->endpoint, {.serial = options.board.serial,
-                                          .high_speed = !options.full_speed,
-                                          .input = board->input});
+  UsbFunction function(
+      *board->endpoint,
+      {.serial = options.board.serial, .high_speed = !options.full_speed, .input = board->input});
   return options.usbip.empty() ? serve<Redirection>(function, options.redirect, options)
                                : serve<UsbIp>(function, options.usbip, options);
 }

@@ -1,4 +1,4 @@
-#include "virtual/usbip_messages.hpp"
+#include "tools/virtual/usbip_messages.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "virtual/usb_function.hpp"
+#include "tools/virtual/usb_function.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -9,15 +9,15 @@
 
 #include "hal/endpoint.hpp"
 #include "hal/error.hpp"
-#include "virtual/usb_function.hpp"
+#include "tools/virtual/usb_function.hpp"
 
 namespace gridrt {
 
 struct VirtualBoardOptions {
-  std::string core = "omp";              ///< seq, omp (software PEs) or sim (the RTL)
-  bool wide = false;                     ///< software PEs without the board's limits
-  std::string serial = "virtual-1";      ///< at most 16 characters of ASCII
-  std::vector<std::byte> flash = {};     ///< a flash image, or empty
+  std::string core = "omp";           ///< seq, omp (software PEs) or sim (the RTL)
+  bool wide = false;                  ///< software PEs without the board's limits
+  std::string serial = "virtual-1";   ///< at most 16 characters of ASCII
+  std::vector<std::byte> flash = {};  ///< a flash image, or empty
 };
 
 /// What stands behind a UsbFunction.

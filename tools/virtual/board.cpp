@@ -1,4 +1,4 @@
-#include "virtual/board.hpp"
+#include "tools/virtual/board.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -37,8 +37,8 @@ std::unique_ptr<Endpoint> software_core(const VirtualBoardOptions& options) {
 class SimulatedEndpoint final : public Endpoint {
  public:
   explicit SimulatedEndpoint(std::unique_ptr<SimBoard> board)
-      : link_(std::move(board), {.silent_clocks = kSilence,
-                                 .most_silences = std::numeric_limits<int>::max()}) {}
+      : link_(std::move(board),
+              {.silent_clocks = kSilence, .most_silences = std::numeric_limits<int>::max()}) {}
 
   Result<void> consume(std::span<const std::byte> bytes) override { return link_.send(bytes); }
   Result<std::size_t> produce(std::span<std::byte> out,
@@ -84,9 +84,9 @@ Result<VirtualBoard> make_virtual_board(const VirtualBoardOptions& options) {
     return fail(ErrorKind::kUsage, "no core '" + options.core + "'", "use seq, omp or sim");
   }
   auto board = std::make_unique<firmware::BoardModel>(
-      software_core(options), firmware::BoardModelOptions{.serial = options.serial,
-                                                          .flash = options.flash,
-                                                          .vectors = firmware::kSelfTestVectors});
+      software_core(options),
+      firmware::BoardModelOptions{
+          .serial = options.serial, .flash = options.flash, .vectors = firmware::kSelfTestVectors});
   InputSource input = [model = board.get()](std::span<std::byte> report) -> std::size_t {
     model->poll();
     const auto waiting = model->take_input();

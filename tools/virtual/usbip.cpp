@@ -1,11 +1,11 @@
-#include "virtual/usbip.hpp"
-
-#include <poll.h>
-#include <sys/socket.h>
+#include "tools/virtual/usbip.hpp"
 
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+
+#include <poll.h>
+#include <sys/socket.h>
 
 #include "gridrt_usb.hpp"
 

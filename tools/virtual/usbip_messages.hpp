@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "virtual/usb_function.hpp"
+#include "tools/virtual/usb_function.hpp"
 
 namespace gridrt::usbip {
 
@@ -45,9 +45,9 @@ struct Urb {
   enum class Kind { kSubmit, kUnlink };
   Kind kind = Kind::kSubmit;
   std::uint32_t sequence = 0;
-  bool in = false;             ///< to the host
-  std::uint8_t endpoint = 0;   ///< number, without the direction
-  std::uint32_t length = 0;    ///< of the transfer; for kUnlink the sequence that it is about
+  bool in = false;            ///< to the host
+  std::uint8_t endpoint = 0;  ///< number, without the direction
+  std::uint32_t length = 0;   ///< of the transfer; for kUnlink the sequence that it is about
   SetupPacket setup = {};
   [[nodiscard]] std::uint8_t address() const {
     return static_cast<std::uint8_t>(endpoint | (in ? 0x80U : 0U));
