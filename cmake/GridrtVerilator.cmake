@@ -68,9 +68,10 @@ function(gridrt_verilated name)
   endif()
   set(folder ${CMAKE_CURRENT_BINARY_DIR}/${name})
   set(flags --top-module ${ARG_TOP} -Wall -O3 --no-timing)
-  set(optimise -O1)  # -O3 is 3 % faster and takes three times as long to compile
+  set(optimise -O2)
   if(ARG_FAST)
     list(APPEND flags --x-assign fast --x-initial fast)
+    set(optimise -O1)  # -O3 is 3 % faster and takes three times as long to compile
   else()
     list(APPEND flags --assert -DGRIDRT_ASSERT ${GRIDRT_ASSERT_WARNINGS})
   endif()

@@ -24,6 +24,10 @@ export PATH=/bin:/programs LD_LIBRARY_PATH=/lib LC_ALL=C.UTF-8 HOME=/
 stty raw -echo -F /dev/ttyS1
 mkdir -p /out; cd /out
 mkdir -p /usr/share/misc /var/run; touch /usr/share/misc/usb.ids  # for usbip
+i=0  # until the kernel has seen the boards that are plugged in
+while [ $(ls /dev | grep -c '^hidraw') -lt {boards} ] && [ $i -lt 300 ]; do
+  sleep 0.1; i=$((i + 1))
+done
 echo guest: up after $(cut -d' ' -f1 /proc/uptime) s
 . /test.sh
 """
@@ -81,7 +85,7 @@ class Guest:
             raise GuestError("the virtual board did not start")
         return socket
 
-    def initramfs(self, script):
+    def initramfs(self, script, boards):
         root = self.path / "root"
         for name in ("bin", "etc", "lib", "lib64", "modules", "programs", "proc", "sys", "dev", "tmp"):
             (root / name).mkdir(parents=True, exist_ok=True)
@@ -101,7 +105,7 @@ class Guest:
                                              encoding="ascii")
         for name, content in self.files.items():
             (root / name).write_bytes(content)
-        (root / "init").write_text(INIT.format(modules=" ".join(MODULES)), encoding="utf-8")
+        (root / "init").write_text(INIT.format(modules=" ".join(MODULES), boards=boards), encoding="utf-8")
         (root / "init").chmod(0o755)
         ending = ("\necho guest: test ends with $?\n"
                   "tar -c -f /dev/ttyS1 -C /out .\nsync\npoweroff -f\n")
@@ -118,7 +122,8 @@ class Guest:
         console, parcel = self.path / "console", self.path / "parcel"
         words = [self.qemu, "-accel", os.environ.get("GRIDRT_GUEST_ACCEL", "tcg,thread=multi"), "-smp", "2", "-m", self.memory_mb,
                  "-machine", "pc", "-cpu", "max", "-nodefaults", "-no-user-config", "-display",
-                 "none", "-no-reboot", "-kernel", self.kernel, "-initrd", self.initramfs(script),
+                 "none", "-no-reboot", "-kernel", self.kernel,
+                 "-initrd", self.initramfs(script, len(boards)),
                  "-append", "console=ttyS0 quiet panic=-1 mitigations=off tsc=reliable "
                  "suspend.pm_test_delay=1",
                  "-serial", f"file:{console}", "-serial", f"file:{parcel}", "-device", "qemu-xhci"]
