@@ -38,8 +38,9 @@ struct DeviceOptions {
   /// Of omp's schedule rays: plain (as seq), or a kind of vectors (host/pe/ray_stream.hpp) such as
   /// baseline, sse4, avx2 and avx512; empty: the widest that this processor has.
   std::string simd = {};
-  int ranks = 0;                       ///< of mpi, started alone; 0: four
-  int threads = 0;                     ///< of omp; 0: all cores (paper: one for each PE)
+  int ranks = 0;    ///< of mpi, started alone; 0: four
+  int threads = 0;  ///< of omp, and of the host's own work for any device but seq and mpi; 0: all
+                    ///< cores (paper: one for each PE)
   std::size_t rays_per_frame = 32768;  ///< batch size on the link, >= 1
   int frames_in_flight = 4;            ///< >= 1
   int timeout_ms = 10000;              ///< longest wait for one answer

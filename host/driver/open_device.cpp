@@ -161,6 +161,8 @@ Result<std::unique_ptr<Device>> open_device(const DeviceOptions& options) {
   }
   const Result<ScheduleOptions> schedule = choose_schedule(chosen);
   if (!schedule) return std::unexpected(schedule.error());
+  // The reference has one thread; ranks have cores of their own to use.
+  if (chosen.name != "omp") chosen.threads = 1;
   if (chosen.name == "mpi") return open_ranks(chosen, *schedule);
   return open_software(chosen, *schedule);
 }

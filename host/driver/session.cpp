@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <chrono>
+#include <numeric>
+#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
@@ -10,8 +13,8 @@
 #include "host/driver/flash_image.hpp"
 #include "host/driver/ray_log.hpp"
 #include "host/driver/ray_order.hpp"
-#include "host/driver/ray_records.hpp"
 #include "host/driver/upload.hpp"
+#include "host/grid/pieces.hpp"
 
 namespace gridrt {
 namespace {
@@ -25,11 +28,15 @@ constexpr int kMostAttempts = 16;  ///< times that one batch is sent before it i
 
 Session::Session(std::unique_ptr<Transport> transport, const DeviceOptions& options)
     : options_(options),
+      threads_(options.threads > 0
+                   ? options.threads
+                   : std::max(1, static_cast<int>(std::thread::hardware_concurrency()))),
       connection_(std::move(transport), std::chrono::milliseconds(options.timeout_ms)) {}
 
 Result<std::unique_ptr<Session>> Session::open(std::unique_ptr<Transport> transport,
                                                const DeviceOptions& options) {
-  if (options.rays_per_frame < 1 || options.frames_in_flight < 1 || options.timeout_ms < 1) {
+  if (options.rays_per_frame < 1 || options.frames_in_flight < 1 || options.timeout_ms < 1 ||
+      options.threads < 0) {
     return fail(ErrorKind::kUsage, "batch size, frames in flight and time limit must be positive");
   }
   std::unique_ptr<Session> session(new Session(std::move(transport), options));
@@ -85,18 +92,35 @@ std::size_t Session::batch_size() const {
   return std::min(options_.rays_per_frame, room);
 }
 
+/// Makes every hit a miss and lists the segments that go to the device, in their order.
+void Session::choose(Work& work) const {
+  const Hit miss = work.query == Query::kAnyHit ? any_hit_answer(false) : Hit{};
+  const std::size_t count = work.segments.size();
+  std::vector<std::size_t> place(pieces_of(count) + 1, 0);  // where a piece's begin
+  for_pieces(count, threads_, [&](std::size_t piece, std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      work.hits[i] = miss;
+      if (!work.segments[i].is_miss()) ++place[piece + 1];
+    }
+  });
+  std::partial_sum(place.begin(), place.end(), place.begin());
+  work.sent.resize(place.back());
+  for_pieces(count, threads_, [&](std::size_t piece, std::size_t first, std::size_t last) {
+    std::size_t at = place[piece];
+    for (std::size_t i = first; i < last; ++i) {
+      if (!work.segments[i].is_miss()) work.sent[at++] = i;
+    }
+  });
+  if (options_.spread_rays && capabilities_.clock_hz > 0) work.sent = spread(work.sent);
+}
+
 Result<void> Session::trace(std::span<const Segment> segments, Query query, std::span<Hit> hits) {
   if (!answers_) return fail(ErrorKind::kUsage, "no image is loaded", "load an image first");
   if (hits.size() != segments.size()) {
     return fail(ErrorKind::kInternal, "trace() needs a hit for each segment");
   }
   Work work{*answers_, segments, query, hits, {}, {}};
-  const Hit miss = query == Query::kAnyHit ? any_hit_answer(false) : Hit{};
-  for (std::size_t i = 0; i < segments.size(); ++i) {
-    hits[i] = miss;
-    if (!segments[i].is_miss()) work.sent.push_back(i);
-  }
-  if (options_.spread_rays && capabilities_.clock_hz > 0) work.sent = spread(work.sent);
+  choose(work);
   std::size_t next = 0;
   while (next < work.sent.size() || !work.in_flight.empty()) {
     while (next < work.sent.size() &&
@@ -108,7 +132,10 @@ Result<void> Session::trace(std::span<const Segment> segments, Query query, std:
       if (auto sent = connection_.send(work.in_flight.back().frame); !sent) return sent;
     }
     if (auto collected = collect(work); !collected) return collected;
-    while (!work.in_flight.empty() && work.in_flight.front().done) work.in_flight.pop_front();
+    while (!work.in_flight.empty() && work.in_flight.front().done) {
+      spare_frames_.push_back(std::move(work.in_flight.front().frame));
+      work.in_flight.pop_front();
+    }
   }
   return {};
 }
@@ -118,6 +145,11 @@ Result<Session::Batch> Session::make_batch(const Work& work, std::size_t first) 
   batch.sequence = connection_.next_sequence();
   batch.first = first;
   batch.count = std::min(batch_size(), work.sent.size() - first);
+  if (!spare_frames_.empty()) {
+    batch.frame = std::move(spare_frames_.back());
+    spare_frames_.pop_back();
+    batch.frame.clear();
+  }
   FrameBuilder builder(batch.frame, FrameType::kTrace, layout_, batch.sequence);
   std::array<std::byte, protocol::TraceHead::kBytes> head{};
   protocol::store(protocol::TraceHead{static_cast<std::uint32_t>(batch.count), batch.sequence},
@@ -125,11 +157,13 @@ Result<Session::Batch> Session::make_batch(const Work& work, std::size_t first) 
   builder.append(head);
   const std::size_t bytes = ray_record_bytes(layout_);
   const std::span<std::byte> records = builder.extend(batch.count * bytes);
-  for (std::size_t i = 0; i < batch.count; ++i) {
-    const Segment& segment = work.segments[work.sent[first + i]];
-    pack_ray(layout_, segment, work.answers.local_id(segment.ignore), work.query,
-             records.subspan(i * bytes, bytes));
-  }
+  for_pieces(batch.count, threads_, [&](std::size_t /*piece*/, std::size_t from, std::size_t to) {
+    for (std::size_t i = from; i < to; ++i) {
+      const Segment& segment = work.segments[work.sent[first + i]];
+      pack_ray(layout_, segment, work.answers.local_id(segment.ignore), work.query,
+               records.subspan(i * bytes, bytes));
+    }
+  });
   if (auto built = builder.finish(); !built) return std::unexpected(std::move(built.error()));
   return batch;
 }
@@ -157,6 +191,20 @@ Result<void> Session::take(Work& work, const Frame& frame) {
   return {};
 }
 
+/// Writes the answer to one segment; what is wrong with it, or null.
+const char* Session::settle(const Work& work, std::size_t index, const DeviceHit& answer) {
+  if (!answer.hit) return nullptr;
+  if (work.query == Query::kAnyHit) {
+    work.hits[index] = any_hit_answer(true);
+    return nullptr;
+  }
+  if (answer.id >= work.answers.size()) return "an id beyond the image";
+  const std::optional<Hit> hit = work.answers.hit(work.segments[index], answer.id);
+  if (!hit) return "a triangle that the ray does not meet";
+  work.hits[index] = *hit;
+  return nullptr;
+}
+
 Result<void> Session::take_hits(Work& work, Batch& batch, const Frame& frame) {
   constexpr std::size_t kHead = protocol::TraceHead::kBytes;
   const std::size_t bytes = hit_record_bytes(layout_);
@@ -168,19 +216,18 @@ Result<void> Session::take_hits(Work& work, Batch& batch, const Frame& frame) {
   if (frame.payload.size() != kHead + batch.count * bytes) return broken("a wrong number of hits");
   const protocol::TraceHead head = protocol::load_trace_head(frame.payload.first<kHead>());
   if (head.count != batch.count || head.tag != batch.sequence) return broken("a wrong batch");
-  for (std::size_t i = 0; i < batch.count; ++i) {
-    const DeviceHit answer = unpack_hit(layout_, frame.payload.subspan(kHead + i * bytes, bytes));
-    if (!answer.hit) continue;
-    const std::size_t index = work.sent[batch.first + i];
-    if (work.query == Query::kAnyHit) {
-      work.hits[index] = any_hit_answer(true);
-      continue;
-    }
-    if (answer.id >= work.answers.size()) return broken("an id beyond the image");
-    const std::optional<Hit> hit = work.answers.hit(work.segments[index], answer.id);
-    if (!hit) return broken("a triangle that the ray does not meet");
-    work.hits[index] = *hit;
-  }
+  const std::span<const std::byte> records = frame.payload.subspan(kHead);
+  std::atomic<const char*> defect{nullptr};
+  for_pieces(batch.count, threads_,
+             [&](std::size_t /*piece*/, std::size_t first, std::size_t last) {
+               const char* found = nullptr;
+               for (std::size_t i = first; i < last && found == nullptr; ++i) {
+                 found = settle(work, work.sent[batch.first + i],
+                                unpack_hit(layout_, records.subspan(i * bytes, bytes)));
+               }
+               if (found != nullptr) defect.store(found);
+             });
+  if (const char* found = defect.load()) return broken(found);
   batch.done = true;
   return {};
 }

@@ -13,6 +13,7 @@
 #include "host/driver/answers.hpp"
 #include "host/driver/connection.hpp"
 #include "host/driver/device.hpp"
+#include "host/driver/ray_records.hpp"
 
 namespace gridrt {
 
@@ -64,6 +65,8 @@ class Session final : public Device {
 
   Session(std::unique_ptr<Transport> transport, const DeviceOptions& options);
   bool is_resident(const Image& image);
+  void choose(Work& work) const;
+  static const char* settle(const Work& work, std::size_t index, const DeviceHit& answer);
   Result<Batch> make_batch(const Work& work, std::size_t first);
   [[nodiscard]] std::size_t batch_size() const;
   Result<void> collect(Work& work);
@@ -73,11 +76,13 @@ class Session final : public Device {
   Result<void> send_again(Batch& batch);
 
   DeviceOptions options_;
+  int threads_;  ///< of packing rays and working out hits
   Connection connection_;
   std::string name_;
   protocol::CapabilitiesReport capabilities_{};
   protocol::Layout layout_ = protocol::Layout::kNone;
-  std::optional<Answers> answers_;     ///< of the loaded image
+  std::optional<Answers> answers_;                    ///< of the loaded image
+  std::vector<std::vector<std::byte>> spare_frames_;  ///< memory of answered batches
   protocol::CountersReport before_{};  ///< what the device had counted when it was opened
   std::uint64_t retries_ = 0;
   std::uint64_t uploads_ = 0;

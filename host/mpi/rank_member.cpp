@@ -71,7 +71,7 @@ Accepted<void> RankMember::add_batch(std::uint32_t batch, std::span<const std::b
   if (!worker_) {
     return refuse(protocol::ErrorCode::kNotReady, static_cast<std::uint32_t>(postbox_.rank()));
   }
-  Accepted<std::vector<BatchRay>> rays = unpack_rays(image_->header, records);
+  Accepted<std::vector<BatchRay>> rays = unpack_rays(image_->header, records, 1);
   if (!rays) return std::unexpected(rays.error());
   if (!busy()) {
     busy_since_ = now_ns();

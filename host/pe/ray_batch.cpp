@@ -1,5 +1,9 @@
 #include "host/pe/ray_batch.hpp"
 
+#include <atomic>
+
+#include "host/grid/pieces.hpp"
+
 namespace gridrt {
 namespace {
 
@@ -42,14 +46,22 @@ bool decode_ray(const protocol::ImageHeader& header,
 
 template <class LayoutTag>
 Accepted<std::vector<BatchRay>> unpack_layout(const protocol::ImageHeader& header,
-                                              std::span<const std::byte> records) {
+                                              std::span<const std::byte> records, int threads) {
   std::vector<BatchRay> rays(records.size() / LayoutTag::kRayBytes);
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    const auto bytes =
-        records.subspan(i * LayoutTag::kRayBytes).template first<LayoutTag::kRayBytes>();
-    if (!decode_ray<LayoutTag>(header, bytes, rays[i])) {
-      return refuse(protocol::ErrorCode::kBadRay, static_cast<std::uint32_t>(i));
+  std::atomic<std::size_t> first_bad{rays.size()};
+  for_pieces(rays.size(), threads, [&](std::size_t /*piece*/, std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      const auto bytes =
+          records.subspan(i * LayoutTag::kRayBytes).template first<LayoutTag::kRayBytes>();
+      if (decode_ray<LayoutTag>(header, bytes, rays[i])) continue;
+      std::size_t before = first_bad.load();
+      while (i < before && !first_bad.compare_exchange_weak(before, i)) {
+      }
+      return;
     }
+  });
+  if (const std::size_t bad = first_bad.load(); bad < rays.size()) {
+    return refuse(protocol::ErrorCode::kBadRay, static_cast<std::uint32_t>(bad));
   }
   return rays;
 }
@@ -70,10 +82,10 @@ bool is_compact(protocol::Layout layout) { return layout == protocol::Layout::kC
 }  // namespace
 
 Accepted<std::vector<BatchRay>> unpack_rays(const protocol::ImageHeader& header,
-                                            std::span<const std::byte> records) {
+                                            std::span<const std::byte> records, int threads) {
   return is_compact(static_cast<protocol::Layout>(header.layout))
-             ? unpack_layout<Compact>(header, records)
-             : unpack_layout<Wide>(header, records);
+             ? unpack_layout<Compact>(header, records, threads)
+             : unpack_layout<Wide>(header, records, threads);
 }
 
 void pack_answer(protocol::Layout layout, const BatchRay& ray, const PeAnswer& answer,

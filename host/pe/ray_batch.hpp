@@ -11,10 +11,10 @@
 
 namespace gridrt {
 
-/// Unpacks whole ray records in the image's layout. Refuses a ray with a coordinate outside the
-/// box (detail: its index).
+/// Unpacks whole ray records in the image's layout, on `threads` threads (>= 1). Refuses rays with
+/// a coordinate outside the box (detail: the index of the first).
 Accepted<std::vector<BatchRay>> unpack_rays(const protocol::ImageHeader& header,
-                                            std::span<const std::byte> records);
+                                            std::span<const std::byte> records, int threads);
 
 /// Writes the hit record of ray `index` of a batch. An any-hit ray that hits has id 0, whatever
 /// the answer's id.

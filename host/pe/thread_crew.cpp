@@ -1,5 +1,6 @@
 #include "host/pe/thread_crew.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "hal/record_sizes.hpp"
@@ -33,7 +34,8 @@ protocol::Layout ThreadCrew::layout() const {
 
 Accepted<void> ThreadCrew::start(const TraceOrder& order) {
   if (!image_) return refuse(protocol::ErrorCode::kNotReady, 0);
-  const Accepted<std::vector<BatchRay>> rays = unpack_rays(image_->header, order.records);
+  const Accepted<std::vector<BatchRay>> rays =
+      unpack_rays(image_->header, order.records, std::max(1, schedule_.threads));
   if (!rays) return std::unexpected(rays.error());
   TraceAnswer answer{order.sequence, order.head, {}, {}};
   answer.hits.resize(rays->size() * hit_record_bytes(layout()));

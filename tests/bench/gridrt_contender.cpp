@@ -3,6 +3,7 @@
 
 #include "host/driver/image_options.hpp"
 #include "host/driver/ray_records.hpp"
+#include "host/grid/pieces.hpp"
 #include "host/grid/segments.hpp"
 #include "host/image/image.hpp"
 #include "host/image/image_file.hpp"
@@ -93,13 +94,6 @@ class GridRT final : public Contender {
     if (part_ == Part::kPes) {
       PeCounters counters;
       trace_rays(*image_, batch_, records_, threads, counters);
-      if (getenv("CNT"))
-        printf(
-            "rays %lu steps %lu tests %lu hits %lu packets %lu voxels %lu blocks %lu tris %lu "
-            "maytris %lu better %lu open %lu\n",
-            counters.rays, counters.steps, counters.tests, counters.interrupts,
-            counters.tests_ahead, counters.barriers, counters.messages, counters.message_bytes,
-            counters.wait_ns, counters.worker_ns, counters.barrier_ns);
       return;
     }
     if (threads != threads_) {
@@ -107,15 +101,11 @@ class GridRT final : public Contender {
       if (!device_->load(*built_)) throw std::runtime_error("the image does not load again");
     }
     if (part_ == Part::kProgram) {
-      constexpr std::size_t kPiece = 1024;
-      const auto n = static_cast<std::ptrdiff_t>((rays_.size() + kPiece - 1) / kPiece);
-#pragma omp parallel for num_threads(threads) if (threads > 1) schedule(dynamic)
-      for (std::ptrdiff_t i = 0; i < n; ++i) {
-        const std::size_t first = static_cast<std::size_t>(i) * kPiece;
-        const std::size_t count = std::min(kPiece, rays_.size() - first);
-        make_segments(lattice_, std::span(rays_).subspan(first, count),
-                      std::span(segments_).subspan(first, count));
-      }
+      for_pieces(rays_.size(), threads,
+                 [&](std::size_t /*piece*/, std::size_t first, std::size_t last) {
+                   make_segments(lattice_, std::span(rays_).subspan(first, last - first),
+                                 std::span(segments_).subspan(first, last - first));
+                 });
     }
     if (const auto done = device_->trace(segments_, Query::kClosestHit, hits_); !done) {
       throw std::runtime_error(done.error().message);

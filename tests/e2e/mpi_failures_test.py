@@ -114,7 +114,9 @@ class Failures(ProgramTest):
         self.assertTrue(wait_until(lambda: len(ranks_of(job.pid, "gridrt-host")) < 4,
                                    2 * LIMIT + SLACK))
         words = self.expect_end(job, ranks)
-        self.assertEqual(job.returncode, 6, words)
+        # Open MPI's launcher crashes at times in its own clean-up, when its job has ended.
+        crashed = job.returncode == -signal.SIGSEGV and "PMIx_server_finalize" in words
+        self.assertTrue(crashed or job.returncode == 6, words)
         self.assertEqual(words.count("gridrt-host: "), 1, words)
         self.assertIn("silent for 10000 ms", words)
         self.assertTrue(self.gone(family))
