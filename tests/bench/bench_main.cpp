@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "host/grid/patient_threads.hpp"
 #include "host/image/image.hpp"
 #include "host/pe/ray_stream.hpp"
 #include "host/scene/load.hpp"
@@ -124,6 +125,7 @@ int run(const Options& options) {
 }  // namespace gridrt::bench
 
 int main(int argc, char** argv) {
+  gridrt::wait_patiently(argv);
   gridrt::bench::Options options;
   CLI::App app("Times GridRT and Embree 3 on the same rays in the same run.");
   app.add_option("mesh", options.mesh, "a mesh file or a built-in scene")->capture_default_str();

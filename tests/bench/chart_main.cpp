@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "host/grid/patient_threads.hpp"
 #include "host/scene/load.hpp"
 #include "tests/adversarial/meshes.hpp"
 #include "tests/adversarial/rays.hpp"
@@ -167,6 +168,7 @@ void run(const Scene& mesh, const std::string& name, std::size_t checked, int ro
 }  // namespace gridrt::bench
 
 int main(int argc, char** argv) {
+  gridrt::wait_patiently(argv);
   std::string mesh = "builtin:teapot";
   std::size_t checked = 100000;
   int rounds = 3;
