@@ -1,5 +1,5 @@
-# Makes gridrt_luna.v (rtl/usb/make_luna.py) with the Python environment of tools/setup test: target
-# gridrt_luna, folder GRIDRT_LUNA_FOLDER.
+# Makes gridrt_luna.v and gridrt_ulpi.v (rtl/usb/make_luna.py) with the Python environment of tools/setup
+# test: target gridrt_luna, folder GRIDRT_LUNA_FOLDER.
 set(places ${PROJECT_SOURCE_DIR}/build/hardware ${PROJECT_BINARY_DIR}/hardware)
 if(DEFINED ENV{GRIDRT_HARDWARE_VENV})
   list(PREPEND places $ENV{GRIDRT_HARDWARE_VENV})
@@ -19,10 +19,18 @@ endif()
 set(GRIDRT_LUNA_FOLDER ${PROJECT_BINARY_DIR}/generated/luna)
 add_custom_command(
   OUTPUT ${GRIDRT_LUNA_FOLDER}/gridrt_luna.v
-  COMMAND ${GRIDRT_LUNA_PYTHON} -B ${PROJECT_SOURCE_DIR}/rtl/usb/make_luna.py utmi
+  COMMAND ${GRIDRT_LUNA_PYTHON} -B ${PROJECT_SOURCE_DIR}/rtl/usb/make_luna.py device
           ${PROJECT_BINARY_DIR}/generated ${GRIDRT_LUNA_FOLDER}/gridrt_luna.v
   DEPENDS ${PROJECT_SOURCE_DIR}/rtl/usb/make_luna.py ${PROJECT_BINARY_DIR}/generated/gridrt_usb.py
           gridrt_protocol
   COMMENT "Making the USB device with LUNA"
   VERBATIM)
-add_custom_target(gridrt_luna ALL DEPENDS ${GRIDRT_LUNA_FOLDER}/gridrt_luna.v)
+add_custom_command(
+  OUTPUT ${GRIDRT_LUNA_FOLDER}/gridrt_ulpi.v
+  COMMAND ${GRIDRT_LUNA_PYTHON} -B ${PROJECT_SOURCE_DIR}/rtl/usb/make_luna.py ulpi
+          ${GRIDRT_LUNA_FOLDER}/gridrt_ulpi.v
+  DEPENDS ${PROJECT_SOURCE_DIR}/rtl/usb/make_luna.py
+  COMMENT "Making the ULPI translator with LUNA"
+  VERBATIM)
+add_custom_target(gridrt_luna ALL
+  DEPENDS ${GRIDRT_LUNA_FOLDER}/gridrt_luna.v ${GRIDRT_LUNA_FOLDER}/gridrt_ulpi.v)

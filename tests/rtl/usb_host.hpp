@@ -33,6 +33,7 @@ struct Utmi {
   bool rx_active = false;
   bool rx_valid = false;
   std::uint8_t line_state = 1;  ///< 0: SE0, 1: J, 2: K
+  bool tx_ready = true;         ///< the PHY takes the device's byte
   bool tx_valid = false;        ///< of the device
   std::uint8_t tx_data = 0;
 };
@@ -273,6 +274,7 @@ class UsbHost {
       if (is(packet, Pid::kStall)) return Outcome::kStall;
       if (is(packet, Pid::kNak)) {
         ++naks;
+        silent = 0;
         idle(60);
         continue;
       }
@@ -308,6 +310,7 @@ class UsbHost {
       if (is(packet, Pid::kStall)) return Outcome::kStall;
       if (is(packet, Pid::kNak)) {
         ++naks;
+        silent = 0;
         ping = endpoint != 2;  // interrupt endpoints do not know it
         idle(60);
         continue;
