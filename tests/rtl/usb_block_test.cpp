@@ -214,6 +214,61 @@ TEST(UsbBlock, LostAndSpoiltPacketsChangeNothing) {
   EXPECT_GT(bench.host.retries, 50);
 }
 
+TEST(UsbBlock, EnumerationBearsLostPackets) {
+  Bench bench;
+  ASSERT_TRUE(bench.host.enumerate());
+  bench.host.faults = {.lose_ours = 12, .spoil_ours = 6, .lose_theirs = 12};
+  for (int round = 0; round < 10; ++round) {
+    expect_descriptors(bench.host, "SIM0");
+    ASSERT_EQ(bench.host.control_out({0x00, 9, usb::kConfiguration, 0, 0}, {}), Outcome::kDone);
+    Bytes data;
+    ASSERT_EQ(bench.host.control_in({0x80, 8, 0, 0, 1}, data), Outcome::kDone);
+    EXPECT_EQ(data, Bytes{usb::kConfiguration}) << round;
+    ASSERT_EQ(bench.host.control_out({0x00, 9, 0, 0, 0}, {}), Outcome::kDone);
+    ASSERT_EQ(bench.host.control_in({0x80, 8, 0, 0, 1}, data), Outcome::kDone);
+    EXPECT_EQ(data, Bytes{0}) << round;
+  }
+  EXPECT_GT(bench.host.retries, 200);
+}
+
+TEST(UsbBlock, WhatTheHostSaysToOthersIsNotHeard) {
+  Bench bench;
+  ASSERT_TRUE(bench.host.enumerate());
+  // Every answer is lost on the cable at first, and then another device has the word.
+  const auto frames = test_frames();
+  for (std::size_t at = 0; at < frames.size(); at += 512) {
+    Bytes packet;
+    for (const std::byte byte :
+         frames.subspan(at).first(std::min<std::size_t>(512, frames.size() - at))) {
+      packet.push_back(std::to_integer<std::uint8_t>(byte));
+    }
+    ASSERT_EQ(bench.host.write(1, packet), Outcome::kDone);
+  }
+  bench.host.idle(20'000);
+  bench.host.faults.lose_theirs = 100;
+  for (int i = 0; i < 3; ++i) {
+    Bytes packet;
+    EXPECT_EQ(bench.host.read(1, packet, 1), Outcome::kTimeout);
+    bench.host.read_from_another();
+  }
+  bench.host.faults = {};
+  EXPECT_EQ(bench.host.exchange({}, test_answers().size()), test_answers());
+}
+
+TEST(UsbBlock, WorksAtFullSpeed) {
+  Bench bench;
+  ASSERT_TRUE(bench.host.enumerate_at_full_speed());
+  EXPECT_EQ(bench.pins().speed_o, 1);
+  expect_descriptors(bench.host, "SIM0", true);
+  EXPECT_EQ(bench.host.report<protocol::CapabilitiesReport>(), board_capabilities());
+  EXPECT_EQ(bench.host.exchange(test_frames(), test_answers().size()), test_answers());
+  EXPECT_EQ(bench.host.largest(), 63U);  // each packet ends a transfer
+  ASSERT_TRUE(bench.host.enumerate());
+  EXPECT_EQ(bench.pins().speed_o, 0);
+  expect_descriptors(bench.host, "SIM0");
+  EXPECT_EQ(bench.host.exchange(test_frames(), test_answers().size()), test_answers());
+}
+
 TEST(UsbBlock, InterruptEndpointsCarryReportsBothWays) {
   Bench bench;
   ASSERT_TRUE(bench.host.enumerate());

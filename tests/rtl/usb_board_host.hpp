@@ -24,12 +24,15 @@ class UsbBoardHost : public UsbHost {
   /// Resets the bus and gives the device an address and its configuration.
   bool enumerate() {
     idle(1000);
-    if (!reset_bus()) return false;
-    if (control_out({0x00, 5, kAddress, 0, 0}, {}) != Outcome::kDone) return false;
-    address = kAddress;
-    return control_out({0x00, 9, usb::kConfiguration, 0, 0}, {}) == Outcome::kDone;
+    bulk_packet_ = usb::kBulkPacketHigh;
+    return reset_bus() && configure();
   }
-
+  /// The same as a host that knows full speed only.
+  bool enumerate_at_full_speed() {
+    idle(1000);
+    bulk_packet_ = usb::kBulkPacketFull;
+    return reset_bus_at_full_speed() && configure();
+  }
   Outcome get_report(std::uint8_t id, Bytes& data, std::uint16_t length = 64) {
     return control_in({0xA1, 1, static_cast<std::uint16_t>(0x300 | id), usb::kHidInterface, length},
                       data);
@@ -64,7 +67,7 @@ class UsbBoardHost : public UsbHost {
     std::size_t sent = 0;
     while ((got.size() < bytes || sent < frames.size()) && silent < 2000) {
       if (sent < frames.size()) {
-        const std::size_t count = std::min(kBulkPacket, frames.size() - sent);
+        const std::size_t count = std::min(bulk_packet_, frames.size() - sent);
         Bytes packet(count);
         for (std::size_t i = 0; i < count; ++i) {
           packet[i] = std::to_integer<std::uint8_t>(frames[sent + i]);
@@ -87,8 +90,14 @@ class UsbBoardHost : public UsbHost {
 
  private:
   static constexpr std::uint8_t kAddress = 42;
-  static constexpr std::size_t kBulkPacket = 512;
 
+  bool configure() {
+    if (control_out({0x00, 5, kAddress, 0, 0}, {}) != Outcome::kDone) return false;
+    address = kAddress;
+    return control_out({0x00, 9, usb::kConfiguration, 0, 0}, {}) == Outcome::kDone;
+  }
+
+  std::size_t bulk_packet_ = usb::kBulkPacketHigh;
   std::size_t largest_ = 0;
 };
 
@@ -97,8 +106,8 @@ Bytes bytes_of(const std::uint8_t (&data)[N]) {
   return Bytes(data, data + N);
 }
 
-/// Reads every descriptor of a device at high speed and compares it with the protocol's.
-inline void expect_descriptors(UsbHost& host, const std::string& serial) {
+/// Reads every descriptor of a device and compares it with the protocol's.
+inline void expect_descriptors(UsbHost& host, const std::string& serial, bool full_speed = false) {
   const auto descriptor = [&](std::uint16_t value, const Bytes& expected, std::uint8_t type = 0x80,
                               std::uint16_t index = 0) {
     Bytes data;
@@ -109,9 +118,11 @@ inline void expect_descriptors(UsbHost& host, const std::string& serial) {
                           expected.begin() + std::min<std::ptrdiff_t>(8, std::ssize(expected))));
   };
   descriptor(0x100, bytes_of(usb::kDeviceDescriptor));
-  descriptor(0x200, bytes_of(usb::kConfigurationHighDescriptor));
+  descriptor(0x200, bytes_of(full_speed ? usb::kConfigurationFullDescriptor
+                                        : usb::kConfigurationHighDescriptor));
   descriptor(0x600, bytes_of(usb::kQualifierDescriptor));
-  descriptor(0x700, bytes_of(usb::kOtherSpeedFullDescriptor));
+  descriptor(0x700, bytes_of(full_speed ? usb::kOtherSpeedHighDescriptor
+                                        : usb::kOtherSpeedFullDescriptor));
   descriptor(0xF00, bytes_of(usb::kBosDescriptor));
   descriptor(0x300, bytes_of(usb::kLanguagesDescriptor));
   descriptor(0x302, bytes_of(usb::kProductDescriptor), 0x80, 0x409);
@@ -126,7 +137,10 @@ inline void expect_descriptors(UsbHost& host, const std::string& serial) {
   ASSERT_EQ(host.control_in({0xC0, usb::kMicrosoftRequest, 0, 7, 1024}, data), Outcome::kDone);
   EXPECT_EQ(data, bytes_of(usb::kMicrosoftDescriptor));
   ASSERT_EQ(host.control_in({0x80, 8, 0, 0, 1}, data), Outcome::kDone);
-  EXPECT_EQ(host.control_in({0x80, 6, 0x500, 0, 18}, data), Outcome::kStall);
+  for (const int kind : {0x500, 0xC00, 0xD00}) {
+    EXPECT_EQ(host.control_in({0x80, 6, static_cast<std::uint16_t>(kind), 0, 18}, data),
+              Outcome::kStall);
+  }
   EXPECT_EQ(host.control_in({0xC0, 0x55, 0, 7, 16}, data), Outcome::kStall);
   descriptor(0x100, bytes_of(usb::kDeviceDescriptor));
 }

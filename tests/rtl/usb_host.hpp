@@ -76,23 +76,10 @@ class UsbHost {
   /// SOFs every 125 us while the bus is in use, or silence.
   void set_frames(bool on) { frames_ = on; }
 
-  /// Resets the bus and goes through the chirps; false if the device is not at high speed.
+  /// Resets the bus and goes through the chirps; false if the device sends none.
   bool reset_bus() {
-    constexpr int kMillisecond = 60'000;
-    address = 0;
-    toggles_ = {};
-    frames_ = false;
-    idle_line_ = 0;
-    // The device's K, then the host's K and J in turn.
-    int waited = 0;
-    while (!pins_.tx_valid && waited < 10 * kMillisecond) {
-      step();
-      ++waited;
-    }
-    while (pins_.tx_valid && waited < 20 * kMillisecond) {
-      step();
-      ++waited;
-    }
+    full_speed_ = false;
+    const bool chirps = begin_reset();
     for (int i = 0; i < 4; ++i) {
       for (const std::uint8_t state : {std::uint8_t{2}, std::uint8_t{1}}) {
         idle_line_ = state;
@@ -102,7 +89,23 @@ class UsbHost {
     idle_line_ = 0;
     idle(1000);
     frames_ = true;
-    return waited < 20 * kMillisecond;
+    return chirps;
+  }
+  /// The same as a host that knows full speed only and does not answer the chirp.
+  bool reset_bus_at_full_speed() {
+    full_speed_ = true;
+    const bool chirps = begin_reset();
+    idle(3 * kMillisecond);
+    idle_line_ = 1;
+    idle(1000);
+    frames_ = true;
+    return chirps;
+  }
+  /// The host reads from another device on the hub: the token and the ACK are heard here, too.
+  void read_from_another() {
+    token(Pid::kIn, static_cast<unsigned>(address ^ 1U) | 1U << 7U);
+    idle(600);
+    handshake(Pid::kAck);
   }
 
   Outcome control_in(const Control& setup, Bytes& data) {
@@ -149,7 +152,28 @@ class UsbHost {
   static constexpr int kPatience = 20'000;
   static constexpr int kTurnaround = 120;  ///< clocks until a packet of the device begins
   static constexpr int kGap = 20;          ///< clocks between two packets of the host
-  static constexpr int kMicroframe = 7500;
+  static constexpr int kMillisecond = 60'000;
+  static constexpr int kByteAtFullSpeed = 40;  ///< clocks
+
+  /// SE0, and the device's K in it.
+  bool begin_reset() {
+    address = 0;
+    toggles_ = {};
+    frames_ = false;
+    idle_line_ = 0;
+    int waited = 0;
+    while (!pins_.tx_valid && waited < 10 * kMillisecond) {
+      step();
+      ++waited;
+    }
+    while (pins_.tx_valid && waited < 20 * kMillisecond) {
+      step();
+      ++waited;
+    }
+    return waited < 20 * kMillisecond;
+  }
+  [[nodiscard]] int byte_clocks() const { return full_speed_ ? kByteAtFullSpeed : 1; }
+  [[nodiscard]] int frame_clocks() const { return full_speed_ ? kMillisecond : kMillisecond / 8; }
 
   void step() {
     if (!sending_) {
@@ -197,8 +221,9 @@ class UsbHost {
       pins_.rx_data = byte;
       pins_.line_state = static_cast<std::uint8_t>(3 - pins_.line_state);
       step();
+      pins_.rx_valid = false;
+      for (int i = 1; i < byte_clocks(); ++i) step();
     }
-    pins_.rx_valid = false;
     pins_.rx_active = false;
     pins_.line_state = idle_line_;
     step();
@@ -210,7 +235,7 @@ class UsbHost {
         {pid_byte(pid), static_cast<std::uint8_t>(word), static_cast<std::uint8_t>(word >> 8U)});
   }
   void token(Pid pid, int endpoint) {
-    if (frames_ && clocks_ - last_frame_ > kMicroframe) {
+    if (frames_ && clocks_ - last_frame_ > frame_clocks()) {
       last_frame_ = clocks_;
       token(Pid::kSof, static_cast<unsigned>(frame_++ / 8 & 0x7FF));
       idle(kGap);
@@ -235,8 +260,12 @@ class UsbHost {
   /// What the device sends within its time; nothing if it is silent.
   std::optional<Bytes> receive() {
     Bytes bytes;
-    for (int i = 0; i < kTurnaround && !pins_.tx_valid; ++i) step();
+    const int patience = full_speed_ ? kTurnaround + 10 * kByteAtFullSpeed : kTurnaround;
+    for (int i = 0; i < patience && !pins_.tx_valid; ++i) step();
     while (pins_.tx_valid && bytes.size() < 4096) {
+      pins_.tx_ready = false;
+      for (int i = 1; i < byte_clocks(); ++i) step();
+      pins_.tx_ready = true;
       bytes.push_back(pins_.tx_data);
       step();
     }
@@ -311,7 +340,7 @@ class UsbHost {
       if (is(packet, Pid::kNak)) {
         ++naks;
         silent = 0;
-        ping = endpoint != 2;  // interrupt endpoints do not know it
+        ping = endpoint != 2 && !full_speed_;  // interrupt endpoints do not know it
         idle(60);
         continue;
       }
@@ -335,6 +364,7 @@ class UsbHost {
   std::uint8_t idle_line_ = 1;
   bool sending_ = false;
   bool frames_ = false;
+  bool full_speed_ = false;
   long clocks_ = 0;
   long last_frame_ = 0;
   long frame_ = 0;
