@@ -17,10 +17,10 @@ import pathlib
 import sys
 import types
 
-from amaranth import (ClockDomain, ClockSignal, Elaboratable, Module, Mux, ResetInserter, ResetSignal,
-                      Signal)
+from amaranth import (ClockDomain, ClockSignal, Const, Elaboratable, Module, Mux, ResetInserter,
+                      ResetSignal, Signal)
 from amaranth.back import verilog
-from luna.gateware.interface.ulpi import UTMITranslator
+from luna.gateware.interface import ulpi
 from luna.gateware.interface.utmi import UTMIInterface
 from luna.gateware.usb.usb2.descriptor import GetDescriptorHandlerBlock
 from luna.gateware.usb.usb2.device import USBDevice
@@ -204,6 +204,18 @@ def one_domain(m, clk, rst):
     m.d.comb += [ClockSignal("usb").eq(clk), ResetSignal("usb").eq(rst)]
 
 
+class RxEvents(ulpi.ULPIRxEventDecoder):
+    """LUNA's decoder of what a PHY tells, also while a register is written: such a word would be lost,
+    and the PHY does not say it again. (While one is read it would be misread, but none ever is.)"""
+
+    def elaborate(self, platform):
+        self.register_operation_in_progress = Const(0)
+        return super().elaborate(platform)
+
+
+ulpi.ULPIRxEventDecoder = RxEvents  # where UTMITranslator finds it
+
+
 class Translator(Elaboratable):
     """ULPI pins on one side, the signals of a UTMI PHY that the device uses on the other."""
 
@@ -217,7 +229,7 @@ class Translator(Elaboratable):
         turn, nxt, stop = Signal(name="ulpi_dir_i"), Signal(name="ulpi_nxt_i"), Signal(name="ulpi_stp_o")
         self.ports = [self.clk, self.rst, data_i, data_o, drive, turn, nxt, stop]
         # With a reset of its own, which is not used, LUNA leaves the PHY alone for 1 ms at first.
-        self.translator = UTMITranslator(handle_clocking=False, ulpi=types.SimpleNamespace(
+        self.translator = ulpi.UTMITranslator(handle_clocking=False, ulpi=types.SimpleNamespace(
             data=types.SimpleNamespace(i=data_i, o=data_o, oe=drive),
             dir=types.SimpleNamespace(i=turn), nxt=types.SimpleNamespace(i=nxt),
             stp=types.SimpleNamespace(o=stop), rst=types.SimpleNamespace(o=Signal())))

@@ -2,7 +2,8 @@
 add_test(NAME rtl_lint COMMAND ${Python3_EXECUTABLE} -B ${CMAKE_CURRENT_LIST_DIR}/lint_test.py
   --verilator ${GRIDRT_VERILATOR} --protocol ${PROJECT_BINARY_DIR}/generated/gridrt_protocol_pkg.sv
   --protocol ${PROJECT_BINARY_DIR}/generated/gridrt_usb_pkg.sv
-  --library ${GRIDRT_PICORV32_FOLDER} --library ${GRIDRT_LUNA_FOLDER} ${PROJECT_SOURCE_DIR}/rtl)
+  --library ${GRIDRT_PICORV32_FOLDER} --library ${GRIDRT_LUNA_FOLDER}
+  --library ${CMAKE_CURRENT_LIST_DIR}/ecp5 ${PROJECT_SOURCE_DIR}/rtl)
 # Illegal parameters are refused.
 add_test(NAME rtl_parameters COMMAND ${Python3_EXECUTABLE} -B
   ${CMAKE_CURRENT_LIST_DIR}/parameters_test.py --verilator ${GRIDRT_VERILATOR}
