@@ -1,7 +1,7 @@
 // The device on an ECPIX-5 (LFE5UM5G-85F, USB3300 PHY): pins, clock, reset, lamps. Everything runs
-// on the PHY's 60 MHz. A PLL takes the delay of the clock tree out of it, so that pins meet the PHY's
-// timing (rtl/board/gridrt_ecpix5.lpf) without registers of their own. docs/bring-up.md tells what
-// the lamps mean. The voltage of the cable is not looked at: the device is always connected.
+// on the PHY's 60 MHz, which come in at a dedicated clock pin; that pin is no PLL's, so a PLL would
+// not take the delay of the clock out. docs/bring-up.md tells what the lamps mean. The voltage of the
+// cable is not looked at: the device is always connected.
 module gridrt_ecpix5 #(
     parameter int unsigned B = 17,
     parameter int unsigned PES = 4
@@ -24,51 +24,21 @@ module gridrt_ecpix5 #(
   localparam logic [127:0] SERIAL = 128'h31_58_49_50_43_45;  // "ECPIX1"; LUNA's is the same
   localparam int unsigned GLOW = 22;  // a lamp stays on for 2^(GLOW-1) clocks, 35 ms
 
-  logic pll_rst, locked, clk, unused_clk;
+  logic clk, hold;
+  assign clk = ulpi_clk_i;
   gridrt_power_up u_power_up (
       .clk_i(clk_100_i),
       .phy_rst_o(ulpi_rst_o),
-      .pll_rst_o(pll_rst)
-  );
-  (* ICP_CURRENT="12" *)(* LPF_RESISTOR="8" *)
-  (* MFG_ENABLE_FILTEROPAMP="1" *)(* MFG_GMCREF_SEL="2" *)
-  EHXPLLL #(
-      .PLLRST_ENA("ENABLED"),
-      .INTFB_WAKE("DISABLED"),
-      .STDBY_ENABLE("DISABLED"),
-      .DPHASE_SOURCE("DISABLED"),
-      .OUTDIVIDER_MUXA("DIVA"),
-      .CLKI_DIV(1),
-      .CLKFB_DIV(1),
-      .CLKOP_ENABLE("ENABLED"),
-      .CLKOP_DIV(10),  // 600 MHz inside
-      .CLKOP_CPHASE(9),
-      .CLKOP_FPHASE(0),
-      .FEEDBK_PATH("CLKOP")
-  ) u_pll (
-      .CLKI(ulpi_clk_i),
-      .CLKFB(clk),
-      .CLKOP(clk),
-      .CLKINTFB(unused_clk),
-      .RST(pll_rst),
-      .STDBY(1'b0),
-      .PHASESEL0(1'b0),
-      .PHASESEL1(1'b0),
-      .PHASEDIR(1'b1),
-      .PHASESTEP(1'b1),
-      .PHASELOADREG(1'b1),
-      .PLLWAKESYNC(1'b0),
-      .ENCLKOP(1'b0),
-      .LOCK(locked)
+      .hold_o(hold)
   );
 
-  // Reset begins at once when the clock is lost and ends some clocks after it has come. The device
-  // has it for longer: LUNA's translator leaves the PHY alone for 1 ms and then sets its registers,
-  // and the device must not take lines that nobody pulls up yet for a reset of the bus.
+  // The translator's reset ends some clocks after the PHY's clock has had time to start. The device's
+  // lasts longer: LUNA leaves the PHY alone for 1 ms and then sets its registers, and the device must
+  // not take lines that nobody pulls up yet for a reset of the bus.
   logic ulpi_rst_n, rst_n;
   gridrt_late_reset u_ulpi_reset (
       .clk_i (clk),
-      .rst_ni(locked),
+      .rst_ni(!hold),
       .rst_no(ulpi_rst_n)
   );
   gridrt_late_reset #(
@@ -180,5 +150,5 @@ module gridrt_ecpix5 #(
   assign led_no[11:9] = '1;
 
   logic unused;
-  assign unused = &{1'b0, unused_clk, waits, blocked};
+  assign unused = &{1'b0, waits, blocked};
 endmodule
