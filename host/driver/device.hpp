@@ -61,7 +61,7 @@ struct DeviceCounters {
   std::uint64_t rays = 0;        ///< traced (segments that are misses by definition are not sent)
   std::uint64_t steps = 0;       ///< traversal steps
   std::uint64_t tests = 0;       ///< exact triangle tests
-  std::uint64_t masked = 0;      ///< references skipped by their octants
+  std::uint64_t masked = 0;      ///< references skipped by their quarters
   std::uint64_t interrupts = 0;  ///< later voxels cancelled by a hit
   std::uint64_t feedback_waits = 0;  ///< hits that waited for an earlier voxel's answer
   std::uint64_t cycles = 0;          ///< of a clocked device, else 0

@@ -4,7 +4,7 @@
 
 #include <omp.h>
 
-#include "host/grid/octants.hpp"
+#include "host/grid/quarters.hpp"
 #include "host/grid/triangle_box.hpp"
 #include "host/grid/voxel_grid.hpp"
 
@@ -56,11 +56,11 @@ void shelve(const VoxelGrid& grid, const Ranges& ranges, const LatticeTriangle& 
         const glm::ivec3 cell{x, y, z};
         const glm::ivec3 lo = cell * grid.edge;
         const glm::ivec3 hi = lo + grid.edge;
-        if (!test.meets(quarter_box(lo, hi, grid.margin))) continue;
-        const OctantSet octants = triangle_octants(test, grid, cell);
+        if (!test.meets(eighth_box(lo, hi, grid.margin))) continue;
+        const QuarterMasks quarters = triangle_quarters(test, grid, cell);
         const std::size_t index = grid.index(cell);
         shelves[index / ranges.width].push_back(
-            {static_cast<std::uint32_t>(index), {number, octants}});
+            {static_cast<std::uint32_t>(index), {number, quarters}});
       }
     }
   }

@@ -7,26 +7,25 @@
 
 namespace gridrt {
 
-QuarterBox quarter_box(const glm::ivec3& lo, const glm::ivec3& hi, int margin) {
+EighthBox eighth_box(const glm::ivec3& lo, const glm::ivec3& hi, int margin) {
   const glm::i64vec3 l{lo};
   const glm::i64vec3 h{hi};
-  return {2L * (l + h), 2L * (h - l) + 4L * margin};
+  return {4L * (l + h), 4L * (h - l) + 8L * margin};
 }
 
-QuarterBox quarter_octant_box(const glm::ivec3& lo, const glm::ivec3& hi, int margin, int octant) {
-  QuarterBox box = quarter_box(lo, hi, margin);
-  for (int a = 0; a < 3; ++a) {
-    const std::int64_t extent = std::int64_t{hi[a]} - lo[a];
-    box.centre[a] += ((octant >> a) & 1) == 0 ? -extent : extent;
-    box.half[a] = extent + 4L * margin;
-  }
+EighthBox eighth_slab_box(const glm::ivec3& lo, const glm::ivec3& hi, int margin, int axis,
+                          int quarter) {
+  EighthBox box = eighth_box(lo, hi, margin);
+  const std::int64_t extent = std::int64_t{hi[axis]} - lo[axis];
+  box.centre[axis] = 8 * std::int64_t{lo[axis]} + (2 * quarter + 1) * extent;
+  box.half[axis] = extent + 8L * margin;
   return box;
 }
 
 TriangleBoxTest::TriangleBoxTest(const LatticeTriangle& triangle) {
   std::int64_t largest = 0;
   for (std::size_t i = 0; i < 3; ++i) {
-    v_[i] = 4L * glm::i64vec3{triangle.v[i]};
+    v_[i] = 8L * glm::i64vec3{triangle.v[i]};
     edge_[i] = glm::i64vec3{triangle.v[(i + 1) % 3]} - glm::i64vec3{triangle.v[i]};
     for (int a = 0; a < 3; ++a) largest = std::max<std::int64_t>(largest, triangle.v[i][a]);
   }
@@ -37,7 +36,7 @@ TriangleBoxTest::TriangleBoxTest(const LatticeTriangle& triangle) {
 }
 
 template <class Scalar>
-bool TriangleBoxTest::plane_meets(const QuarterBox& box) const {
+bool TriangleBoxTest::plane_meets(const EighthBox& box) const {
   Scalar distance = 0;
   Scalar radius = 0;
   for (int i = 0; i < 3; ++i) {
@@ -47,7 +46,7 @@ bool TriangleBoxTest::plane_meets(const QuarterBox& box) const {
   return distance <= radius && -distance <= radius;
 }
 
-bool TriangleBoxTest::meets(const QuarterBox& box) const {
+bool TriangleBoxTest::meets(const EighthBox& box) const {
   std::array<glm::i64vec3, 3> r{};
   for (std::size_t i = 0; i < 3; ++i) r[i] = v_[i] - box.centre;
   for (int a = 0; a < 3; ++a) {

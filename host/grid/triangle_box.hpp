@@ -7,30 +7,31 @@
 
 namespace gridrt {
 
-/// A closed box in quarter lattice steps (so that the octants of a voxel have integer centres):
-/// |x - centre| <= half per axis.
-struct QuarterBox {
+/// A closed box in eighths of a lattice step (so that the quarters of a voxel have integer
+/// centres): |x - centre| <= half per axis.
+struct EighthBox {
   glm::i64vec3 centre{0};
   glm::i64vec3 half{0};
 };
 
-/// The box [lo, hi] (lattice steps), or one octant of it (0 to 7, bit a: the upper half of axis a),
-/// grown by `margin` lattice steps on every side.
-QuarterBox quarter_box(const glm::ivec3& lo, const glm::ivec3& hi, int margin);
-QuarterBox quarter_octant_box(const glm::ivec3& lo, const glm::ivec3& hi, int margin, int octant);
+/// The box [lo, hi] (lattice steps), or the part of it in a quarter (0 to 3) of one axis, grown by
+/// `margin` lattice steps on every side.
+EighthBox eighth_box(const glm::ivec3& lo, const glm::ivec3& hi, int margin);
+EighthBox eighth_slab_box(const glm::ivec3& lo, const glm::ivec3& hi, int margin, int axis,
+                          int quarter);
 
 /// A triangle prepared for many boxes. Exact for bits <= 24.
 /// Source of the method: Akenine-Moeller, "Fast 3D Triangle-Box Overlap Testing", 2001.
 class TriangleBoxTest {
  public:
   explicit TriangleBoxTest(const LatticeTriangle& triangle);
-  [[nodiscard]] bool meets(const QuarterBox& box) const;
+  [[nodiscard]] bool meets(const EighthBox& box) const;
 
  private:
   template <class Scalar>
-  [[nodiscard]] bool plane_meets(const QuarterBox& box) const;
+  [[nodiscard]] bool plane_meets(const EighthBox& box) const;
 
-  std::array<glm::i64vec3, 3> v_{};     ///< quarter steps
+  std::array<glm::i64vec3, 3> v_{};     ///< eighths of a step
   std::array<glm::i64vec3, 3> edge_{};  ///< lattice steps
   glm::i64vec3 normal_{0};              ///< lattice steps squared
   bool narrow_ = true;                  ///< 64 bits hold the plane test

@@ -37,15 +37,15 @@ struct VoxelGrid {
   }
 };
 
-/// Which octants of the voxel a triangle (or a ray) touches: bit x + 2 y + 4 z, 1 for the upper
-/// half of an axis.
-using OctantSet = std::uint8_t;
-inline constexpr OctantSet kAllOctants = 0xFF;
+/// Quarters of a voxel on each axis, bit 0 the lowest one: x in bits 0 to 3, y in 4 to 7, z in 8
+/// to 11.
+using QuarterMasks = std::uint16_t;
+inline constexpr QuarterMasks kAllQuarters = 0xFFF;
 
 /// One triangle in one voxel.
 struct VoxelReference {
   std::uint32_t triangle;  ///< index into the triangles the grid was built from
-  OctantSet octants;       ///< that it touches, margin included
+  QuarterMasks quarters;   ///< that it touches, margin included: an interval on each axis
 };
 
 /// References by voxel: those of voxel i are references[first[i] .. first[i + 1]), ascending.

@@ -127,7 +127,7 @@ Chunker::Extract Chunker::extract(const Part& part) {
   }
   for_each_voxel(cut_.grid, part.box, [&](const glm::ivec3&, std::size_t cell) {
     for (const VoxelReference& r : list(cell)) {
-      out.lists.references.push_back({triangle_index_[r.triangle], r.octants});
+      out.lists.references.push_back({triangle_index_[r.triangle], r.quarters});
     }
   });
   for (std::size_t i = 0; i < cut_.grid.cells(); ++i) {

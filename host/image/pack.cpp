@@ -9,7 +9,7 @@
 
 #include "host/image/blocks.hpp"
 #include "host/image/limits.hpp"
-#include "host/image/octant_code.hpp"
+#include "host/image/quarter_code.hpp"
 
 namespace gridrt {
 namespace {
@@ -150,7 +150,7 @@ class Collector {
     for (const std::size_t cell : pe.cells) {
       for (const VoxelReference& r : list(cell)) {
         references.add(
-            protocol::ReferenceRecord{triangle_index_[r.triangle], octant_code(r.octants)});
+            protocol::ReferenceRecord{triangle_index_[r.triangle], quarter_code(r.quarters)});
       }
     }
     for (const std::uint32_t v : pe.vertices) vertex_index_[v] = kNone;

@@ -6,10 +6,9 @@
 
 #include <glm/geometric.hpp>
 
-#include "host/grid/octants.hpp"
+#include "host/grid/quarters.hpp"
 #include "host/grid/traversal.hpp"
 #include "host/image/blocks.hpp"
-#include "host/image/octant_code.hpp"
 #include "host/image/uniform.hpp"
 
 namespace gridrt {
@@ -228,10 +227,10 @@ GridLoad RaySample::measure(const VoxelGrid& grid, const VoxelLists& lists) {
     steps += walk.run(s.segment, s.hit.quotient, [&](const VoxelVisit& v) {
       const std::span<const VoxelReference> list = walk.list(v.voxel);
       if (list.empty()) return;
-      const OctantSet octants = ray_octants(grid, s.segment.p0, s.segment.p1, v);
+      const CellSet cells = ray_cells(grid, s.segment.p0, s.segment.p1, v);
       std::size_t tests = 0;
       for (const VoxelReference& r : list) {
-        if ((octants_of_code(octant_code(r.octants)) & octants) != 0) ++tests;
+        if ((cells_of(r.quarters) & cells) != 0) ++tests;
       }
       tasks += 1.0;
       const std::size_t clocks = std::max({(list.size() + 1) / 2, tests, std::size_t{1}});

@@ -7,8 +7,8 @@
 
 #include "host/image/blocks.hpp"
 #include "host/image/image_file.hpp"
-#include "host/image/octant_code.hpp"
 #include "host/image/pack.hpp"
+#include "host/image/quarter_code.hpp"
 #include "host/image/triangles.hpp"
 #include "host/image/weld.hpp"
 
@@ -29,7 +29,7 @@ std::string text(const protocol::CellRecord& r) {
   return fmt::format("first {}, count {}, PE {}", r.first, r.count, r.pe);
 }
 std::string text(const protocol::ReferenceRecord& r) {
-  return fmt::format("triangle {}, octants {:#04x}", r.triangle, octants_of_code(r.octants));
+  return fmt::format("triangle {}, quarters {:#05x}", r.triangle, quarters_of_code(r.quarters));
 }
 std::string text(const protocol::TriangleRecord& r) {
   return fmt::format("vertices {}, id {}", fmt::join(r.vertex, " "), r.id);

@@ -12,7 +12,7 @@ struct PeCounters {
   std::uint64_t rays = 0;
   std::uint64_t steps = 0;           ///< slabs looked at
   std::uint64_t tests = 0;           ///< exact tests
-  std::uint64_t masked = 0;          ///< references left out by their octants
+  std::uint64_t masked = 0;          ///< references left out by their quarters
   std::uint64_t interrupts = 0;      ///< voxels, and all behind them, cancelled by a hit
   std::uint64_t feedback_waits = 0;  ///< hits that waited for the answer of an earlier voxel
 

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "host/grid/octants.hpp"
+#include "host/grid/quarters.hpp"
 
 namespace gridrt {
 
@@ -41,12 +41,12 @@ PeAnswer Engine::closest_hit(const PeRay& ray, PeCounters& counters,
         }
         const Cell* cell = traversal_.find(visit.voxel);
         if (cell == nullptr || !pes_[cell->pe]) {
-          if (observer != nullptr) observer->on_voxel(visit, cell, 0);
+          if (observer != nullptr) observer->on_voxel(visit, cell);
           return true;
         }
-        const OctantSet octants = ray_octants(grid, ray.p0, ray.p1, visit);
-        if (observer != nullptr) observer->on_voxel(visit, cell, octants);
-        pes_[cell->pe]->test(ray, cell->first, cell->count, octants, best, counters, observer);
+        const CellSet cells = ray_cells(grid, ray.p0, ray.p1, visit);
+        if (observer != nullptr) observer->on_voxel(visit, cell);
+        pes_[cell->pe]->test(ray, cell->first, cell->count, cells, best, counters, observer);
         return true;
       });
   ++counters.rays;
@@ -63,8 +63,8 @@ bool Engine::any_hit(const PeRay& ray, PeCounters& counters) const {
       [&](const VoxelVisit& visit) {
         const Cell* cell = traversal_.find(visit.voxel);
         if (cell == nullptr || !pes_[cell->pe]) return true;
-        const OctantSet octants = ray_octants(grid, ray.p0, ray.p1, visit);
-        hit = pes_[cell->pe]->test_any(ray, cell->first, cell->count, octants, counters);
+        const CellSet cells = ray_cells(grid, ray.p0, ray.p1, visit);
+        hit = pes_[cell->pe]->test_any(ray, cell->first, cell->count, cells, counters);
         if (hit) ++counters.interrupts;
         return !hit;
       });

@@ -18,7 +18,7 @@ using PeAnswer = std::optional<HitKey>;
 /// Told of each step of a ray's life (for --explain).
 class EngineObserver : public PeObserver {
  public:
-  virtual void on_voxel(const VoxelVisit& visit, const Cell* cell, OctantSet octants) = 0;
+  virtual void on_voxel(const VoxelVisit& visit, const Cell* cell) = 0;
   virtual void on_cancel(const VoxelVisit& visit, const HitKey& best) = 0;
 };
 

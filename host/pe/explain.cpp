@@ -16,7 +16,7 @@ class Recorder final : public EngineObserver {
   Recorder(std::vector<ExplainEvent>& events, const std::vector<std::uint32_t>& global_ids)
       : events_(events), global_ids_(global_ids) {}
 
-  void on_voxel(const VoxelVisit& visit, const Cell* cell, OctantSet /*octants*/) override {
+  void on_voxel(const VoxelVisit& visit, const Cell* cell) override {
     ExplainEvent event = at(ExplainEvent::Kind::kVoxel, visit);
     if (cell != nullptr) {
       event.pe = static_cast<int>(cell->pe);

@@ -17,7 +17,7 @@ namespace gridrt {
 struct ExplainEvent {
   enum class Kind {
     kVoxel,   ///< a voxel is met: voxel, quotients of entry and exit, pe (-1: no references)
-    kMasked,  ///< a reference is skipped by its octants: pe, id
+    kMasked,  ///< a reference is skipped by its quarters: pe, id
     kTest,    ///< an exact test without a hit: pe, id
     kHit,     ///< an exact test with a hit: pe, id, quotient
     kCancel,  ///< the voxel and all later ones are cancelled by the best hit: id, quotient

@@ -1,6 +1,7 @@
 #include "host/pe/pe.hpp"
 
-#include "host/image/octant_code.hpp"
+#include "host/grid/quarters.hpp"
+#include "host/image/quarter_code.hpp"
 
 namespace gridrt {
 namespace {
@@ -9,7 +10,9 @@ using protocol::ErrorCode;
 using protocol::SectionKind;
 
 /// True if the ray and the triangle may meet within the voxel.
-bool share_an_octant(OctantSet a, OctantSet b) { return (a & b) != 0; }
+bool share_a_cell(const VoxelReference& reference, CellSet ray) {
+  return (cells_of(reference.quarters) & ray) != 0;
+}
 
 }  // namespace
 
@@ -57,7 +60,7 @@ Accepted<Pe> Pe::decode(const protocol::ImageHeader& header, std::uint8_t number
   for (std::size_t i = 0; i < pe.references_.size(); ++i) {
     const protocol::ReferenceRecord record = reference_codec.at(references, i);
     if (record.triangle >= pe.triangles_.size()) return bad(SectionKind::kReferences);
-    pe.references_[i] = {record.triangle, octants_of_code(record.octants)};
+    pe.references_[i] = {record.triangle, quarters_of_code(record.quarters)};
   }
   return pe;
 }
@@ -69,12 +72,12 @@ std::optional<ExactHit> Pe::intersect(const PeRay& ray, const glm::ivec3& d,
   return intersect_exact(ray.p0, ray.p1, {{e.v0, e.v0 + e.e1, e.v0 + e.e2}});
 }
 
-void Pe::test(const PeRay& ray, std::uint32_t first, std::uint32_t count, OctantSet octants,
+void Pe::test(const PeRay& ray, std::uint32_t first, std::uint32_t count, CellSet cells,
               HitKey& best, PeCounters& counters, PeObserver* observer) const {
   const glm::ivec3 d = ray.p1 - ray.p0;
   for (const VoxelReference& reference : std::span(references_).subspan(first, count)) {
     const Triangle& triangle = triangles_[reference.triangle];
-    if (!share_an_octant(reference.octants, octants)) {
+    if (!share_a_cell(reference, cells)) {
       ++counters.masked;
       if (observer != nullptr) observer->on_masked(triangle.id);
       continue;
@@ -91,12 +94,12 @@ void Pe::test(const PeRay& ray, std::uint32_t first, std::uint32_t count, Octant
   }
 }
 
-bool Pe::test_any(const PeRay& ray, std::uint32_t first, std::uint32_t count, OctantSet octants,
+bool Pe::test_any(const PeRay& ray, std::uint32_t first, std::uint32_t count, CellSet cells,
                   PeCounters& counters) const {
   const glm::ivec3 d = ray.p1 - ray.p0;
   for (const VoxelReference& reference : std::span(references_).subspan(first, count)) {
     const Triangle& triangle = triangles_[reference.triangle];
-    if (!share_an_octant(reference.octants, octants)) {
+    if (!share_a_cell(reference, cells)) {
       ++counters.masked;
       continue;
     }

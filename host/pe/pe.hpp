@@ -8,6 +8,7 @@
 #include "gridrt_protocol.hpp"
 #include "host/grid/intersect.hpp"
 #include "host/grid/intersect_narrow.hpp"
+#include "host/grid/quarters.hpp"
 #include "host/grid/voxel_grid.hpp"
 #include "host/pe/counters.hpp"
 #include "host/pe/refusal.hpp"
@@ -57,13 +58,13 @@ class Pe {
 
   [[nodiscard]] std::span<const Triangle> triangles() const { return triangles_; }
 
-  /// Tests the references [first, first + count) that touch one of `octants` and lowers
+  /// Tests the references [first, first + count) that touch one of `cells` and lowers
   /// `best` to the smallest key found. The range lies within references().
-  void test(const PeRay& ray, std::uint32_t first, std::uint32_t count, OctantSet octants,
-            HitKey& best, PeCounters& counters, PeObserver* observer = nullptr) const;
+  void test(const PeRay& ray, std::uint32_t first, std::uint32_t count, CellSet cells, HitKey& best,
+            PeCounters& counters, PeObserver* observer = nullptr) const;
 
   /// The same, but stops at the first hit; true if there is one.
-  bool test_any(const PeRay& ray, std::uint32_t first, std::uint32_t count, OctantSet octants,
+  bool test_any(const PeRay& ray, std::uint32_t first, std::uint32_t count, CellSet cells,
                 PeCounters& counters) const;
 
  private:

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "host/grid/octants.hpp"
+#include "host/grid/quarters.hpp"
 
 namespace gridrt {
 namespace {
@@ -145,11 +145,11 @@ bool PesWorker::test_voxel(const Run& run, const VoxelVisit& visit, const Cell& 
   const Pe* pe = engine_.pe(cell.pe);
   if (pe == nullptr) return false;
   const BatchRay& r = run.batch.rays[run.ray];
-  const OctantSet octants = ray_octants(engine_.traversal().grid(), r.ray.p0, r.ray.p1, visit);
+  const CellSet cells = ray_cells(engine_.traversal().grid(), r.ray.p0, r.ray.p1, visit);
   const HitKey before = best;
   if (!r.any_hit) {
-    pe->test(r.ray, cell.first, cell.count, octants, best, counters_);
-  } else if (pe->test_any(r.ray, cell.first, cell.count, octants, counters_)) {
+    pe->test(r.ray, cell.first, cell.count, cells, best, counters_);
+  } else if (pe->test_any(r.ray, cell.first, cell.count, cells, counters_)) {
     best = HitKey{0, 0};
   }
   return best < before;

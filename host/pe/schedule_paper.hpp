@@ -5,7 +5,7 @@
 
 #include <span>
 
-#include "host/grid/octants.hpp"
+#include "host/grid/quarters.hpp"
 #include "host/pe/ray_batch.hpp"
 #include "host/pe/schedule.hpp"
 
@@ -27,7 +27,7 @@ template <class Behind>
 bool test_until(const Pe& pe, const VoxelGrid& grid, const BatchRay& r, const ListedVoxel& v,
                 HitKey& best, PeCounters& counters, Behind&& behind) {
   constexpr std::uint32_t kSlice = 32;  ///< references
-  const OctantSet octants = ray_octants(grid, r.ray.p0, r.ray.p1, v.visit);
+  const CellSet cells = ray_cells(grid, r.ray.p0, r.ray.p1, v.visit);
   const std::uint64_t tests = counters.tests;
   const std::uint64_t start = now_ns();
   for (std::uint32_t done = 0; done < v.cell.count; done += kSlice) {
@@ -39,8 +39,8 @@ bool test_until(const Pe& pe, const VoxelGrid& grid, const BatchRay& r, const Li
     }
     const std::uint32_t count = v.cell.count - done < kSlice ? v.cell.count - done : kSlice;
     if (!r.any_hit) {
-      pe.test(r.ray, v.cell.first + done, count, octants, best, counters);
-    } else if (pe.test_any(r.ray, v.cell.first + done, count, octants, counters)) {
+      pe.test(r.ray, v.cell.first + done, count, cells, best, counters);
+    } else if (pe.test_any(r.ray, v.cell.first + done, count, cells, counters)) {
       best = HitKey{0, 0};
       return true;
     }

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "host/grid/voxel_grid.hpp"
-#include "host/image/octant_code.hpp"
+#include "host/image/quarter_code.hpp"
 #include "tests/adversarial/bridge.hpp"
 #include "tests/adversarial/meshes.hpp"
 
@@ -55,15 +55,18 @@ bool meets(const LatticeTriangle& t, const RationalBox& box) {
 
 constexpr int kWhole = -1;
 
-/// The voxel's box, or one octant of it (bit a: the upper half of axis a), grown by the margin.
-RationalBox box_of(const VoxelGrid& grid, const glm::ivec3& voxel, int octant) {
+/// The voxel's box, or the part of it in one quarter of an axis (4 axis + quarter), grown by the
+/// margin.
+RationalBox box_of(const VoxelGrid& grid, const glm::ivec3& voxel, int slab) {
   RationalBox box;
   for (int i = 0; i < 3; ++i) {
     const auto k = static_cast<std::size_t>(i);
     box.lo[k] = voxel[i] * grid.edge[i];
     box.hi[k] = box.lo[k] + grid.edge[i];
-    const Rational middle = (box.lo[k] + box.hi[k]) / 2;
-    if (octant != kWhole) (((octant >> i) & 1) == 0 ? box.hi[k] : box.lo[k]) = middle;
+    if (slab != kWhole && slab / 4 == i) {
+      box.lo[k] += Rational(grid.edge[i] * (slab % 4)) / 4;
+      box.hi[k] = box.lo[k] + Rational(grid.edge[i]) / 4;
+    }
     box.lo[k] -= grid.margin;
     box.hi[k] += grid.margin;
   }
@@ -102,11 +105,11 @@ void check_scene(const Scene& scene, int bits, const glm::ivec3& wanted, std::si
       for (int x = 0; x < grid.count.x; ++x) {
         const glm::ivec3 voxel{x, y, z};
         const std::size_t cell = grid.index(voxel);
-        std::map<std::uint32_t, OctantSet> found;
+        std::map<std::uint32_t, QuarterMasks> found;
         for (auto i = lists.first[cell]; i < lists.first[cell + 1]; ++i) {
           const VoxelReference& r = lists.references[i];
           ASSERT_TRUE(i == lists.first[cell] || lists.references[i - 1].triangle < r.triangle);
-          found[r.triangle] = octants_of_code(octant_code(r.octants));
+          found[r.triangle] = quarters_of_code(quarter_code(r.quarters));
           ++references;
         }
         for (std::uint32_t t = 0; t < triangles.size(); ++t) {
@@ -118,9 +121,10 @@ void check_scene(const Scene& scene, int bits, const glm::ivec3& wanted, std::si
             continue;
           }
           ASSERT_NE(it, found.end()) << "triangle " << t << " lost in a voxel";
-          for (int octant = 0; octant < 8; ++octant) {
-            if (!meets(triangles[t], box_of(grid, voxel, octant))) continue;
-            ASSERT_TRUE((it->second >> octant) & 1) << "octant lost";
+          for (int slab = 0; slab < 12; ++slab) {
+            ASSERT_EQ((it->second >> slab) & 1,
+                      meets(triangles[t], box_of(grid, voxel, slab)) ? 1 : 0)
+                << "quarter " << slab % 4 << " of axis " << slab / 4;
           }
         }
       }
@@ -128,7 +132,7 @@ void check_scene(const Scene& scene, int bits, const glm::ivec3& wanted, std::si
   }
 }
 
-TEST(Binning, LosesNoVoxelAndNoOctant) {
+TEST(Binning, LosesNoVoxelAndNoQuarter) {
   Random random(50);
   std::size_t references = 0;
   std::size_t extra = 0;
@@ -171,7 +175,7 @@ TEST(Binning, ListsDoNotDependOnTheNumberOfThreads) {
       EXPECT_EQ(many.first, one.first);
       EXPECT_TRUE(std::ranges::equal(many.references, one.references,
                                      [](const VoxelReference& a, const VoxelReference& b) {
-                                       return a.triangle == b.triangle && a.octants == b.octants;
+                                       return a.triangle == b.triangle && a.quarters == b.quarters;
                                      }));
     }
     for (std::size_t cell = 0; cell < grid.cells(); ++cell) {

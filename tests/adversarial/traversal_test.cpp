@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "host/grid/octants.hpp"
+#include "host/grid/quarters.hpp"
 #include "tests/adversarial/bridge.hpp"
 #include "tests/adversarial/meshes.hpp"
 #include "tests/adversarial/rays.hpp"
@@ -19,19 +19,21 @@ using truth::Rational;
 
 constexpr int kWhole = -1;
 
-/// The part of [0, 1] within the voxel's closed box, or within an octant of it (bit a: the upper
-/// half of axis a), by clipping in rationals; empty: first > last.
+/// The part of [0, 1] within the voxel's closed box, or within a cell of it (two bits an axis: the
+/// quarter), by clipping in rationals; empty: first > last.
 struct Part {
   Rational first = 0;
   Rational last = 1;
 };
-Part clip(const VoxelGrid& grid, const glm::ivec3& voxel, const Segment& s, int octant = kWhole) {
+Part clip(const VoxelGrid& grid, const glm::ivec3& voxel, const Segment& s, int cell = kWhole) {
   Part part;
   for (int i = 0; i < 3; ++i) {
     Rational low = voxel[i] * grid.edge[i] - s.p0[i];
     Rational high = low + grid.edge[i];
-    const Rational middle = (low + high) / 2;
-    if (octant != kWhole) (((octant >> i) & 1) == 0 ? high : low) = middle;
+    if (cell != kWhole) {
+      low += Rational(grid.edge[i] * ((cell >> (2 * i)) & 3)) / 4;
+      high = low + Rational(grid.edge[i]) / 4;
+    }
     const Rational d = s.p1[i] - s.p0[i];
     if (d == 0) {
       if (low > 0 || high < 0) return {1, 0};
@@ -157,7 +159,7 @@ TEST(Case24, VisitedVoxelsAreExactlyThoseMet) {
   std::printf("case 24: %zu rays, %zu voxels visited, exactly those met\n", rays, voxels);
 }
 
-TEST(Case24, ParametersAndOctantsAreThoseOfRationalClipping) {
+TEST(Case24, ParametersAndCellsAreThoseOfRationalClipping) {
   Random random(25);
   std::size_t rays = 0;
   for (int round = 0; round < 60; ++round) {
@@ -175,10 +177,10 @@ TEST(Case24, ParametersAndOctantsAreThoseOfRationalClipping) {
         EXPECT_EQ(Rational(v.leave.num) / v.leave.den, part.last);
         EXPECT_EQ(v.enter.quotient(),
                   truth::floor_of(truth::power_of_two(24) * part.first).get_ui());
-        const OctantSet octants = ray_octants(f.grid, s.p0, s.p1, v);
-        for (int octant = 0; octant < 8; ++octant) {
-          const Part in = clip(f.grid, v.voxel, s, octant);
-          EXPECT_EQ(((octants >> octant) & 1U) != 0, in.first <= in.last);
+        const CellSet cells = ray_cells(f.grid, s.p0, s.p1, v);
+        for (int cell = 0; cell < 64; ++cell) {
+          const Part in = clip(f.grid, v.voxel, s, cell);
+          EXPECT_EQ(((cells >> cell) & 1U) != 0, in.first <= in.last);
         }
         return true;
       });
@@ -193,7 +195,7 @@ TEST(Case24, ParametersAndOctantsAreThoseOfRationalClipping) {
       if (HasFailure()) return;
     }
   }
-  std::printf("case 24: %zu rays, parameters and octants equal rational clipping\n", rays);
+  std::printf("case 24: %zu rays, parameters and cells equal rational clipping\n", rays);
 }
 
 }  // namespace

@@ -184,7 +184,7 @@ TEST(Codecs, AnyWidths) {
     SlowPacker slow_reference;
     reference.triangle = random_bits(random, h.triangle_index_bits);
     slow_reference.add(reference.triangle, h.triangle_index_bits);
-    slow_reference.add(reference.octants = random_bits(random, 6), 6);
+    slow_reference.add(reference.quarters = random_bits(random, 10), 10);
     expect_codec(ReferenceCodec(h), reference, slow_reference);
 
     TriangleRecord triangle;

@@ -74,7 +74,7 @@ VoxelLists lists_of(const VoxelGrid& grid, const std::set<std::size_t>& occupied
   for (std::size_t c = 0; c < grid.cells(); ++c) {
     lists.first[c + 1] = lists.first[c] + (occupied.contains(c) ? 1 : 0);
   }
-  lists.references.resize(lists.first.back(), {0, kAllOctants});
+  lists.references.resize(lists.first.back(), {0, kAllQuarters});
   return lists;
 }
 

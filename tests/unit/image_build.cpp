@@ -6,7 +6,7 @@
 
 #include "host/image/blocks.hpp"
 #include "host/image/image_file.hpp"
-#include "host/image/octant_code.hpp"
+#include "host/image/quarter_code.hpp"
 #include "image_support.hpp"
 
 namespace gridrt {
@@ -21,7 +21,7 @@ const std::vector<std::byte>& bytes_of(const Image& image, SectionKind kind, int
   return section == nullptr ? none : section->bytes;
 }
 
-/// The lists of an image by voxel: owner, then (local id, octants' code) in order.
+/// The lists of an image by voxel: owner, then (local id, quarters' code) in order.
 struct DecodedCell {
   std::uint32_t pe = 0;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> references;
@@ -54,7 +54,7 @@ std::vector<DecodedCell> decode_cells(const Image& image) {
             const auto r =
                 references.at(bytes_of(image, SectionKind::kReferences, pe), c.first + i);
             const auto t = triangles.at(bytes_of(image, SectionKind::kTriangles, pe), r.triangle);
-            target.references.emplace_back(t.id, r.octants);
+            target.references.emplace_back(t.id, r.quarters);
           }
         }
       }
@@ -97,8 +97,7 @@ TEST(BuildImage, CellsHoldWhatTheGridGives) {
       ASSERT_EQ(cells[c].references.size(), lists.first[c + 1] - lists.first[c]);
       for (std::size_t i = 0; i < cells[c].references.size(); ++i) {
         const VoxelReference& r = lists.references[lists.first[c] + i];
-        EXPECT_EQ(cells[c].references[i],
-                  std::pair(r.triangle, std::uint32_t{octant_code(r.octants)}));
+        EXPECT_EQ(cells[c].references[i], std::pair(r.triangle, quarter_code(r.quarters)));
       }
       if (!cells[c].references.empty()) {
         EXPECT_EQ(cells[c].pe, (*owners)[c]);

@@ -102,9 +102,10 @@ std::vector<Corruption> record_corruptions(const Image& image) {
       cell("an owner that is not there", [](auto& r) { r.pe = 3; }),
       reference("another triangle", [](auto& r) { r.triangle ^= 1; }),
       reference("a triangle that is not there", [](auto& r) { r.triangle = 4000; }),
-      reference("an octant hidden", [](auto& r) { r.octants = r.octants == 0 ? 1 : 0; }),
-      reference("octants shown", [](auto& r) { r.octants = r.octants == 58 ? 57 : 58; }),
-      reference("another code of the same set", [](auto& r) { r.octants = 63; }),
+      reference("quarters moved", [](auto& r) { r.quarters ^= 1; }),
+      reference("all but one quarter hidden",
+                [](auto& r) { r.quarters = r.quarters == 0 ? 1 : 0; }),
+      reference("all quarters shown", [](auto& r) { r.quarters = r.quarters == 0xFF ? 0 : 0xFF; }),
       triangle(
           "a vertex that is not there", [](auto& r) { r.vertex[1] = 4000; }, in_triangles),
       triangle(
