@@ -234,7 +234,7 @@ TEST(Codecs, SizesOfTheBoard) {
   h.triangle_index_bits = static_cast<std::uint8_t>(kCompactLimits.triangle_index_bits);
   h.id_bits = static_cast<std::uint8_t>(kCompactLimits.id_bits);
   EXPECT_EQ(VertexCodec(h).bits(), 54U);
-  EXPECT_EQ(ReferenceCodec(h).bits(), 18U);
+  EXPECT_EQ(ReferenceCodec(h).bits(), 22U);
   EXPECT_EQ(TriangleCodec(h).bits(), 56U);
 }
 
