@@ -5,6 +5,7 @@ add_executable(unit_image
   image_file.cpp
   image_limits.cpp
   image_measured.cpp
+  image_quarters.cpp
   image_scene.cpp
   image_verify.cpp
   image_weld.cpp)
