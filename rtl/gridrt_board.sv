@@ -11,7 +11,7 @@ module gridrt_board #(
     parameter int unsigned AHEAD = 2,
     parameter int unsigned BLOCKS = 4096,
     parameter int unsigned CELLS = 8192,
-    parameter int unsigned REFS = 10240,
+    parameter int unsigned REFS = 8192,
     parameter int unsigned TRIS = 4096,
     parameter int unsigned VERTS = 2560,
     parameter int unsigned DIVIDERS = 3,

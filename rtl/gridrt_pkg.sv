@@ -19,13 +19,14 @@ package gridrt_pkg;
   localparam int unsigned CELL_W = 13;  // index of a cell record
   localparam int unsigned BLOCK_W = 12;  // index of a 2x2x2 block
   localparam int unsigned AXIS_W = 10;  // voxels along an axis, 1 .. 512
-  localparam int unsigned FRACTION = 12;  // bits behind the point of a lateral position
+  localparam int unsigned FRACTION = 13;  // bits behind the point of a lateral position
   localparam logic [ID_W-1:0] NO_ID = '1;
   // Widths of the structs below, for arrays of them: yosys takes neither $bits of a type in a
   // package nor fields of an array's element.
-  localparam int unsigned TASK_W = SLOT_W + REF_W + LIST_W + 8 + DIST_W;
+  localparam int unsigned CELLS_W = 2 + 2 * 4 * 4;
+  localparam int unsigned TASK_W = SLOT_W + REF_W + LIST_W + CELLS_W + DIST_W;
   localparam int unsigned EVENT_W = SLOT_W + 2 + Q_W + ID_W + DIST_W;
-  localparam int unsigned WAY_W = 2 + 4 + 2 * 4 * 4;
+  localparam int unsigned WAY_W = 2 + 8 + 2 * 9 * 4;
   localparam int unsigned BUNDLE_W = SLOT_W + CELL_W + 3 * 8 + WAY_W + 2 * DIST_W;
   localparam int unsigned INTERRUPT_W = 1 + SLOT_W + DIST_W;
   localparam int unsigned SLOT_EVENT_W = 1 + SLOT_W;
@@ -36,7 +37,11 @@ package gridrt_pkg;
     logic [SLOT_W-1:0] slot;
     logic [REF_W-1:0]  first;
     logic [LIST_W-1:0] count;  // >= 1
-    logic [7:0]        octants;  // of the voxel, that the ray touches: bit x + 2 y + 4 z
+    // The dominant axis a; then, for the quarter-slabs of a from the last to the first, the quarters of
+    // b = a + 1 (modulo 3) in which the ray is within each, none where it is not; and those of c = a + 2.
+    // Within a quarter-slab it meets every quarter of b together with every one of c, a superset of the
+    // truth. Not mirrored.
+    logic [CELLS_W-1:0] cells;
     logic [DIST_W-1:0] enter;  // where the ray enters the voxel's slab
   } task_t;
 
@@ -50,14 +55,14 @@ package gridrt_pkg;
     logic [DIST_W-1:0] limit;  // slabs entered beyond it hold no smaller key
   } event_t;
 
-  // A ray's way through a block: the four half-slabs of the dominant axis a that it is in, and the four
-  // half-voxels of the other axes b = a + 1, c = a + 2 (modulo 3) in which it is within each. Within a
-  // half-slab it meets every half that it has on b together with every half on c, a superset of the
-  // truth. Not mirrored.
+  // A ray's way through a block: the eight quarter-slabs of the dominant axis a that it is in, and where
+  // it is on the other axes b = a + 1, c = a + 2 (modulo 3) at their nine faces: a quarter of the block's
+  // two voxels, 0 to 7, or outside of the block (8 and more). It never moves by more than a quarter from
+  // one face to the next. Not mirrored.
   typedef struct packed {
     logic [1:0]           axis;
-    logic [3:0]           holds;  // by half-slab
-    logic [1:0][3:0][3:0] halves;  // b, c; by half-slab and half-voxel
+    logic [7:0]           holds;  // by quarter-slab
+    logic [1:0][8:0][3:0] samples;  // b, c; by face
   } way_t;
 
   // The voxels of one 2x2x2 block that a ray meets, from a traversal unit to an expander. A voxel is
@@ -101,7 +106,7 @@ package gridrt_pkg;
     logic       ray;  // a ray has been committed
     logic [2:0] steps;  // traversal steps
     logic [2:0] tests;  // exact tests
-    logic [4:0] masked;  // references left out by their octants
+    logic [4:0] masked;  // references left out by their quarters
     logic [2:0] interrupts;  // tasks and voxels cancelled by an earlier hit
     logic       feedback_wait;  // a hit that waited for earlier voxels has been committed
     logic       in_flight;  // at least one ray is in the engine

@@ -15,11 +15,11 @@ module gridrt_engine #(
     parameter int unsigned AHEAD = 2,  // tasks of a ray in advance: no step with so many pending
     parameter int unsigned BLOCKS = 4096,  // memory sizes, records; the last three for each PE
     parameter int unsigned CELLS = 8192,
-    parameter int unsigned REFS = 10240,
+    parameter int unsigned REFS = 8192,
     parameter int unsigned TRIS = 4096,
     parameter int unsigned VERTS = 2560,
     parameter int unsigned DIVIDERS = 3,  // of a PE
-    parameter bit MASK = 1'b1,  // 0: octants are ignored
+    parameter bit MASK = 1'b1,  // 0: quarters are ignored
     parameter bit CANCEL = 1'b1,  // 0: hits cancel nothing
     parameter bit FEEDBACK = 1'b1  // 0: the first hit is the answer (a wrong machine, for a test)
 ) (

@@ -30,23 +30,48 @@ module gridrt_tap #(
     output gridrt_pkg::tap_t                                         tap_o
 );
   gridrt_pkg::task_t made;
+  logic [PE_W-1:0] made_pe;
+  always_comb begin
+    made = '0;
+    made_pe = '0;
+    for (int unsigned e = 0; e < EXPS; e++) begin
+      if (task_valid_i[e]) begin
+        made = made | task_i[e];
+        made_pe = made_pe | (task_pe_i[e] & PE_W'(PES - 1));
+      end
+    end
+  end
+
+  // Octants of the voxel that the ray touches, by dominant axis (bit a + 2 b + 4 c), then by x, y, z.
+  logic [7:0] turned, octants;
+  always_comb begin
+    turned = '0;
+    for (int unsigned j = 0; j < 4; j++) begin
+      for (int unsigned o = 0; o < 4; o++) begin
+        if (made.cells[16+4*j+2*(o%2)+:2] != '0 && made.cells[4*j+2*(o/2)+:2] != '0) begin
+          turned[j/2+2*o] = 1'b1;
+        end
+      end
+    end
+    for (int unsigned o = 0; o < 8; o++) begin
+      case (made.cells[gridrt_pkg::CELLS_W-1-:2])
+        2'd0: octants[o] = turned[o];
+        2'd1: octants[o] = turned[(o/2)%4+4*(o%2)];
+        default: octants[o] = turned[o/4+2*(o%4)];
+      endcase
+    end
+  end
   always_comb begin
     tap_o = '0;
     tap_o.step_valid = step_valid_i;
     tap_o.step_block = step_block_i;
     tap_o.step_cand = step_cand_i;
     tap_o.step_jump = 8'(step_jump_i);
-    made = '0;
-    for (int unsigned e = 0; e < EXPS; e++) begin
-      if (task_valid_i[e]) begin
-        made = made | task_i[e];
-        tap_o.task_pe = tap_o.task_pe | (task_pe_i[e] & PE_W'(PES - 1));
-      end
-    end
+    tap_o.task_pe = made_pe;
     tap_o.task_valid = task_valid_i != '0;
     tap_o.task_first = made.first;
     tap_o.task_count = made.count;
-    tap_o.task_octants = made.octants;
+    tap_o.task_octants = octants;
     tap_o.task_enter = made.enter;
     tap_o.expand_drop = expand_drop_i != '0;
     for (int unsigned p = 0; p < PES; p++) begin

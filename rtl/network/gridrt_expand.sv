@@ -29,6 +29,7 @@ module gridrt_expand #(
     output gridrt_pkg::slot_event_t                   drop_o  // a voxel that an earlier hit cancels
 );
   localparam int unsigned TASK_W = gridrt_pkg::TASK_W;
+  localparam int unsigned CELLS_W = gridrt_pkg::CELLS_W;
   localparam int unsigned USED_W = $clog2(DEPTH + 1);
 
   if (DEPTH < 5) begin : gen_illegal
@@ -72,14 +73,14 @@ module gridrt_expand #(
     end
   end
 
-  // Asking: the limit decides whether the cell is read; which octants of the voxel the ray touches.
+  // Asking: the limit decides whether the cell is read; where the ray is within the voxel.
   logic ask_valid, drop;
   logic [SLOT_W-1:0] ask_slot;
   logic [CELL_W-1:0] ask_base;
   logic [2:0] ask_rank;
   logic [2:0] ask_voxel;  // x, y, z
   gridrt_pkg::way_t ask_way;
-  logic [7:0] ask_octants;
+  logic [CELLS_W-1:0] ask_cells;
   logic [DIST_W-1:0] ask_enter, limit;
 
   gridrt_limits #(
@@ -107,10 +108,10 @@ module gridrt_expand #(
       ask_enter  <= ((voxel & now.front) != '0) ? now.near_enter : now.far_enter;
     end
   end
-  gridrt_octants u_octants (
+  gridrt_ray_cells u_ray_cells (
       .way_i(ask_way),
       .voxel_i(ask_voxel),
-      .octants_o(ask_octants)
+      .cells_o(ask_cells)
   );
   assign drop = ask_valid && ask_enter > limit;
   assign drop_o.valid = drop;
@@ -120,7 +121,7 @@ module gridrt_expand #(
 
   // Waiting for the record.
   logic read1_valid, read2_valid;
-  logic [SLOT_W+8+DIST_W-1:0] read1, read2;
+  logic [SLOT_W+CELLS_W+DIST_W-1:0] read1, read2;
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
       read1_valid <= 1'b0;
@@ -131,7 +132,7 @@ module gridrt_expand #(
     end
   end
   always_ff @(posedge clk_i) begin
-    if (cell_enable_o) read1 <= {ask_slot, ask_octants, ask_enter};
+    if (cell_enable_o) read1 <= {ask_slot, ask_cells, ask_enter};
     if (read1_valid) read2 <= read1;
   end
 
@@ -140,7 +141,7 @@ module gridrt_expand #(
   logic made_ready;
   logic [USED_W-1:0] made_count;
   always_comb begin
-    {made.slot, made.octants, made.enter} = read2;
+    {made.slot, made.cells, made.enter} = read2;
     {made_pe, made.count, made.first} = cell_i;
     // A list is never empty; a wrong image must not make a task that ends without an answer.
     if (made.count == '0) made.count = LIST_W'(1);

@@ -1,21 +1,21 @@
-// From tasks to references: reads four references a clock, leaves out those that share no octant of
+// From tasks to references: reads four references a clock, leaves out those that share no cell of
 // the voxel with the ray, and gives the rest one a clock, `last` on the last one of its task. The next
 // task follows without a gap. A task in which nothing passes ends with a pulse of `none` and takes no
 // clock from the others. A task whose ray has been hit before the task's slab is given up.
 // Within a task the order of references is of no account.
 module gridrt_fetch #(
-    parameter int unsigned REFS = 10240,
+    parameter int unsigned REFS = 8192,
     parameter bit MASK = 1'b1,
     parameter bit CANCEL = 1'b1,
-    parameter int unsigned ROWS = 8
+    parameter int unsigned ROWS = 16
 ) (
     input  logic                          clk_i,
     input  logic                          rst_ni,
     input  gridrt_pkg::interrupt_t        interrupt_i,
-    // Loading: reference records (triangle, then mask).
+    // Loading: reference records (triangle, then quarters).
     input  logic                          write_i,
     input  logic [gridrt_pkg::REF_W-1:0]  write_index_i,
-    input  logic [gridrt_pkg::TRI_W+5:0]  write_data_i,
+    input  logic [gridrt_pkg::TRI_W+9:0]  write_data_i,
     input  logic                          task_valid_i,
     output logic                          task_ready_o,
     input  gridrt_pkg::task_t             task_i,
@@ -33,13 +33,15 @@ module gridrt_fetch #(
   localparam int unsigned HALF = REFS / 2;
   localparam int unsigned ADDRESS_W = $clog2(HALF);
   localparam int unsigned WAY = 4;  // references a clock
-  localparam int unsigned REF_BITS = gridrt_pkg::TRI_W + 6;
+  localparam int unsigned REF_BITS = gridrt_pkg::TRI_W + 10;
+  localparam int unsigned LOW_BITS = 18;  // of these, in memories of their own
+  localparam int unsigned CELLS_W = gridrt_pkg::CELLS_W;
   localparam int unsigned TRI_W = gridrt_pkg::TRI_W;
   localparam int unsigned SLOT_W = gridrt_pkg::SLOT_W;
   localparam int unsigned ROW_W = WAY * TRI_W + WAY + SLOT_W + 1;
   localparam int unsigned INDEX_W = $clog2(ROWS);
 
-  if (ROWS < 6 || (1 << INDEX_W) != ROWS) begin : gen_illegal
+  if (ROWS < 7 || (1 << INDEX_W) != ROWS) begin : gen_illegal
     $error("gridrt_fetch: ROWS must be a power of two, 8 at least");
   end
   if (REFS < 4 || REFS % 2 != 0) begin : gen_illegal_memory
@@ -51,7 +53,7 @@ module gridrt_fetch #(
   logic [SLOT_W-1:0] slot;
   logic [gridrt_pkg::REF_W-1:0] at;
   logic [gridrt_pkg::LIST_W-1:0] left;
-  logic [7:0] octants;
+  logic [CELLS_W-1:0] cells;
   logic [gridrt_pkg::DIST_W-1:0] enter;
 
   // The sender has compared the task with the ray's limit as it was before the clock in which the
@@ -67,9 +69,9 @@ module gridrt_fetch #(
 
   // Rows in the queue and on their way to it never exceed its size.
   logic [INDEX_W:0] rows;
-  logic [1:0] on_the_way;
+  logic [2:0] on_the_way;
   logic go, ends;
-  assign on_the_way = 2'(valid_1) + 2'(valid_2) + 2'(valid_3);
+  assign on_the_way = 3'(valid_1) + 3'(valid_2) + 3'(valid_3) + 3'(valid_4);
   assign go = busy && rows + (INDEX_W + 1)'(on_the_way) < (INDEX_W + 1)'(ROWS);
   assign ends = cancelled || left <= 10'(WAY);
   assign task_ready_o = !busy || (go && ends);
@@ -89,7 +91,7 @@ module gridrt_fetch #(
       slot <= task_i.slot;
       at <= task_i.first;
       left <= task_i.count;
-      octants <= task_i.octants;
+      cells <= task_i.cells;
       enter <= task_i.enter;
     end else if (go) begin
       at <= at + 14'(WAY);
@@ -97,15 +99,17 @@ module gridrt_fetch #(
     end
   end
 
-  // 1, 2: the memory; 3: what passes. References with even and with odd indices lie in memories of
+  // 1, 2: the memory; 3: quarters, from the dominant axis on; 4: what passes. References with even and with odd indices lie in memories of
   // their own, two ports each: rows are {odd second, odd first, even second, even first}.
-  logic valid_1, valid_2, valid_3;
-  logic [WAY-1:0] wanted, wanted_1, wanted_2, pass, pass_3;
-  logic end_1, end_2, end_3;
-  logic [SLOT_W-1:0] slot_1, slot_2, slot_3;
-  logic [7:0] octants_1, octants_2;
+  logic valid_1, valid_2, valid_3, valid_4;
+  logic [WAY-1:0] wanted, wanted_1, wanted_2, wanted_3, pass, pass_4;
+  logic end_1, end_2, end_3, end_4;
+  logic [SLOT_W-1:0] slot_1, slot_2, slot_3, slot_4;
+  logic [CELLS_W-1:0] cells_1, cells_2;
+  logic [CELLS_W-3:0] cells_3;
   logic [WAY-1:0][REF_BITS-1:0] found;
-  logic [WAY-1:0][TRI_W-1:0] triangle_3;
+  logic [WAY-1:0][TRI_W-1:0] triangle_3, triangle_4;
+  logic [WAY-1:0][2:0][3:0] masks, masks_3;  // dominant axis, b, c
   logic [gridrt_pkg::REF_W-1:0] even_at, odd_at;
   logic [ADDRESS_W-1:0] even_first, odd_first;
   assign even_at = (at + 14'd1) >> 1;
@@ -125,8 +129,9 @@ module gridrt_fetch #(
     logic [ADDRESS_W-1:0] first;
     assign write = write_i && write_index_i[0] == (h == 1);
     assign first = (h == 1) ? odd_first : even_first;
+    // 18 bits and 4: the shapes that leave nothing of a block memory unused.
     gridrt_ram_tdp #(
-        .WIDTH(REF_BITS),
+        .WIDTH(LOW_BITS),
         .DEPTH(HALF),
         .BANK((HALF > 2048) ? 2048 : HALF),
         .OUTPUT_REGISTER(1'b1)
@@ -135,25 +140,55 @@ module gridrt_fetch #(
         .a_write_i(write),
         .a_enable_i(go || write),
         .a_address_i(write ? ADDRESS_W'(write_index_i >> 1) : first),
-        .a_data_i(write_data_i),
-        .a_data_o(found[2*h]),
+        .a_data_i(write_data_i[LOW_BITS-1:0]),
+        .a_data_o(found[2*h][LOW_BITS-1:0]),
         .b_enable_i(go),
         .b_address_i(first + 1'b1),
-        .b_data_o(found[2*h+1])
+        .b_data_o(found[2*h+1][LOW_BITS-1:0])
+    );
+    gridrt_ram_tdp #(
+        .WIDTH(REF_BITS - LOW_BITS),
+        .DEPTH(HALF),
+        .OUTPUT_REGISTER(1'b1)
+    ) u_references_high (
+        .clk_i,
+        .a_write_i(write),
+        .a_enable_i(go || write),
+        .a_address_i(write ? ADDRESS_W'(write_index_i >> 1) : first),
+        .a_data_i(write_data_i[REF_BITS-1:LOW_BITS]),
+        .a_data_o(found[2*h][REF_BITS-1:LOW_BITS]),
+        .b_enable_i(go),
+        .b_address_i(first + 1'b1),
+        .b_data_o(found[2*h+1][REF_BITS-1:LOW_BITS])
     );
   end
 
-  function automatic logic share(input logic [5:0] code, input logic [7:0] set);
-    logic [7:0] both;
-    both = gridrt_protocol_pkg::OCTANT_SETS[{code, 3'b0}+:8] & set;
-    share = !MASK || both != '0;
-  endfunction
+  logic [WAY-1:0] match;
+  for (genvar i = 0; i < WAY; i++) begin : gen_match
+    logic [2:0][3:0] turned;  // z, y, x
+    gridrt_quarters u_quarters (
+        .code_i(found[i][TRI_W+:10]),
+        .masks_o(turned)
+    );
+    always_comb begin
+      case (cells_2[CELLS_W-1-:2])
+        2'd0: masks[i] = turned;
+        2'd1: masks[i] = {turned[0], turned[2], turned[1]};
+        default: masks[i] = {turned[1], turned[0], turned[2]};
+      endcase
+    end
+    gridrt_match u_match (
+        .masks_i(masks_3[i]),
+        .cells_i(cells_3),
+        .match_o(match[i])
+    );
+  end
 
   always_comb begin
     masked_o = '0;
     for (int unsigned i = 0; i < WAY; i++) begin
-      pass[i] = wanted_2[i] && share(found[i][TRI_W+:6], octants_2);
-      if (valid_2 && wanted_2[i] && !pass[i]) masked_o = masked_o + 3'd1;
+      pass[i] = wanted_3[i] && (!MASK || match[i]);
+      if (valid_3 && wanted_3[i] && !pass[i]) masked_o = masked_o + 3'd1;
     end
   end
 
@@ -164,15 +199,17 @@ module gridrt_fetch #(
       valid_1 <= 1'b0;
       valid_2 <= 1'b0;
       valid_3 <= 1'b0;
+      valid_4 <= 1'b0;
       begun   <= 1'b0;
       none_o  <= '0;
     end else begin
       valid_1 <= go;
       valid_2 <= valid_1;
-      valid_3 <= valid_2 && ((end_2 && begun) || pass != '0);
-      if (valid_2) begun <= !end_2 && (begun || pass != '0);
-      none_o.valid <= valid_2 && end_2 && !begun && pass == '0;
-      none_o.slot  <= slot_2;
+      valid_3 <= valid_2;
+      valid_4 <= valid_3 && ((end_3 && begun) || pass != '0);
+      if (valid_3) begun <= !end_3 && (begun || pass != '0);
+      none_o.valid <= valid_3 && end_3 && !begun && pass == '0;
+      none_o.slot  <= slot_3;
     end
   end
   always_ff @(posedge clk_i) begin
@@ -180,19 +217,27 @@ module gridrt_fetch #(
       wanted_1 <= wanted;
       end_1 <= ends;
       slot_1 <= slot;
-      octants_1 <= octants;
+      cells_1 <= cells;
     end
     if (valid_1) begin
       wanted_2 <= wanted_1;
       end_2 <= end_1;
       slot_2 <= slot_1;
-      octants_2 <= octants_1;
+      cells_2 <= cells_1;
     end
     if (valid_2) begin
-      pass_3 <= pass;
-      end_3  <= end_2;
+      wanted_3 <= wanted_2;
+      end_3 <= end_2;
       slot_3 <= slot_2;
+      cells_3 <= cells_2[CELLS_W-3:0];
+      masks_3 <= masks;
       for (int unsigned i = 0; i < WAY; i++) triangle_3[i] <= found[i][TRI_W-1:0];
+    end
+    if (valid_3) begin
+      pass_4 <= pass;
+      end_4 <= end_3;
+      slot_4 <= slot_3;
+      triangle_4 <= triangle_3;
     end
   end
 
@@ -207,13 +252,13 @@ module gridrt_fetch #(
   logic now_end, next_bare, tail_now, offered, taken;
   logic [1:0] pop;
 
-  assign row_data = {slot_3, triangle_3, pass_3, end_3};
+  assign row_data = {slot_4, triangle_4, pass_4, end_4};
   gridrt_lutram #(
       .WIDTH(ROW_W),
       .DEPTH(ROWS)
   ) u_now (
       .clk_i,
-      .write_i(valid_3),
+      .write_i(valid_4),
       .write_address_i(tail),
       .write_data_i(row_data),
       .read_address_i(head),
@@ -224,7 +269,7 @@ module gridrt_fetch #(
       .DEPTH(ROWS)
   ) u_next (
       .clk_i,
-      .write_i(valid_3),
+      .write_i(valid_4),
       .write_address_i(tail),
       .write_data_i(row_data[WAY:0]),
       .read_address_i(head + 1'b1),
@@ -257,9 +302,9 @@ module gridrt_fetch #(
       rows <= '0;
       gone <= '0;
     end else begin
-      if (valid_3) tail <= tail + 1'b1;
+      if (valid_4) tail <= tail + 1'b1;
       head <= head + INDEX_W'(pop);
-      rows <= rows + (INDEX_W + 1)'(valid_3) - (INDEX_W + 1)'(pop);
+      rows <= rows + (INDEX_W + 1)'(valid_4) - (INDEX_W + 1)'(pop);
       if (taken) gone <= tail_now ? '0 : gone | chosen;
     end
   end
@@ -277,7 +322,7 @@ module gridrt_fetch #(
     if (rst_ni) begin
       assert (rows <= (INDEX_W + 1)'(ROWS));
       assert (!waited || valid_o);
-      assert (!(valid_3 && rows == (INDEX_W + 1)'(ROWS)));
+      assert (!(valid_4 && rows == (INDEX_W + 1)'(ROWS)));
       assert (!(offered && now_pass == '0));
       if (task_valid_i && task_ready_o) assert (task_i.count != '0);
     end

@@ -2,10 +2,10 @@
 // clocks, 31 clocks long. It stands still while its result is not taken.
 //
 //   clock  1- 4  lengths and signs; mirrored ends
-//          4-10  half-voxels of both ends on each axis (dividers); meanwhile the dominant axis: the
+//          4-10  quarters of voxels of both ends on each axis (dividers); meanwhile the dominant axis: the
 //                one with the largest length / edge, compared by cross products
-//         10-25  increments per half-slab and for the first, partial one (dividers); block address
-//         24-31  back from the first half-face to the block's entry face, where traversal starts
+//         10-25  increments per quarter-slab and for the first, partial one (dividers); block address
+//         24-31  back from the first quarter-face to the block's entry face, where traversal starts
 //
 // What is done twice for a ray is done by the same logic in two clocks in a row: for P0, then P1; for
 // the first lateral axis, then the second. Registers are named after the clock at whose end they are
@@ -14,7 +14,7 @@
 // even ones.
 //
 // 8 multipliers: three for the cross products, which are the increments' dividends as well, one for
-// the partial half-slab, one for the block address, one for its entry face, two for the way back.
+// the partial quarter-slab, one for the block address, one for its entry face, two for the way back.
 // What is needed later rides along in distributed memory (gridrt_delay).
 module gridrt_setup #(
     parameter int unsigned B = 17  // lattice bits
@@ -55,7 +55,7 @@ module gridrt_setup #(
   if (gridrt_state_pkg::AXIS_W != AXIS_W || gridrt_state_pkg::BLOCK_W != gridrt_pkg::BLOCK_W ||
       gridrt_state_pkg::DIST_W != gridrt_pkg::DIST_W || EDGE_W != gridrt_pkg::DIST_W ||
       EDGE_W != MAX_B + 1 || SPAN_W != MAX_B + 2 || gridrt_state_pkg::SLABS_W != AXIS_W - 2 ||
-      UNIT_SHIFT != gridrt_pkg::FRACTION - 1 || REST_W != MAX_B + UNIT_SHIFT)
+      UNIT_SHIFT != gridrt_pkg::FRACTION - 2 || REST_W != MAX_B + UNIT_SHIFT)
   begin : gen_illegal_widths
     $error("gridrt_setup: gridrt_state_pkg and gridrt_pkg disagree about widths");
   end
@@ -78,13 +78,13 @@ module gridrt_setup #(
     end
   end
 
-  // 1-4: lengths, signs, mirrored ends (twice the coordinate: half-voxels are counted).
+  // 1-4: lengths, signs, mirrored ends (four times the coordinate: quarters are counted).
   logic [2:0][B-1:0] s1_p0, s1_p1, s2_end;
   logic [ID_W-1:0] s1_ignore;
   logic s1_any;
   logic [2:0][B:0] s2_d;
   logic [2:0] s2_neg;
-  logic [2:0][SPAN_W:0] s3_twice;
+  logic [2:0][SPAN_W+1:0] s3_four;
   always_comb begin
     for (int unsigned a = 0; a < 3; a++) s2_neg[a] = s2_d[a][B];
   end
@@ -101,7 +101,7 @@ module gridrt_setup #(
     if (enable) begin
       s2_end <= odd ? s1_p0 : s1_p1;
       for (int unsigned a = 0; a < 3; a++) begin
-        s3_twice[a] <= {s2_neg[a] ? grid_i.span[a] - SPAN_W'(s2_end[a]) : SPAN_W'(s2_end[a]), 1'b0};
+        s3_four[a] <= {s2_neg[a] ? grid_i.span[a] - SPAN_W'(s2_end[a]) : SPAN_W'(s2_end[a]), 2'b00};
       end
     end
   end
@@ -112,7 +112,7 @@ module gridrt_setup #(
   logic [1:0] s10_lateral, s11_lateral, s12_lateral, s26_lateral;
   logic [MAX_B-1:0] s9_length, s11_length, s13_length, s12_length;
   logic [PRODUCT_W-1:0] s9_product;
-  logic [1:0] s11_first, s12_first, s13_first, s24_first;
+  logic [2:0] s11_first, s12_first, s13_first, s24_first;
   gridrt_setup_axis #(
       .B(B)
   ) i_axis (
@@ -147,7 +147,7 @@ module gridrt_setup #(
     end
   end
   gridrt_delay #(
-      .WIDTH (4),
+      .WIDTH (5),
       .CLOCKS(6)
   ) i_axis_late (
       .clk_i,
@@ -166,9 +166,9 @@ module gridrt_setup #(
 
   logic [EDGE_W-1:0] s10_edge, s12_ahead;
   logic [2:0][AXIS_W-3:0] s10_block;
-  logic [2:0][AXIS_W-1:0] s12_end;
+  logic [2:0][AXIS_W:0] s12_end;
   logic s11_far, s23_far;
-  logic [1:0] s11_low, s23_low;
+  logic [2:0] s11_low, s23_low;
   logic [EDGE_W-2:0] s11_rest, s23_rest;
   gridrt_setup_ends i_ends (
       .clk_i,
@@ -178,7 +178,7 @@ module gridrt_setup #(
       .valid_i(valid[1]),
       .edges_i(grid_i.edges),
       .half_blocks_i(grid_i.half_blocks),
-      .s3_twice_i(s3_twice),
+      .s3_four_i(s3_four),
       .s9_axis_i(s9_axis),
       .s10_axis_i(s10_axis),
       .s10_lateral_i(s10_lateral),
@@ -192,7 +192,7 @@ module gridrt_setup #(
       .s12_end_o(s12_end)
   );
   gridrt_delay #(
-      .WIDTH (EDGE_W + 2),
+      .WIDTH (EDGE_W + 3),
       .CLOCKS(12)
   ) i_late (
       .clk_i,
@@ -234,7 +234,7 @@ module gridrt_setup #(
       .s24_slope_i(s24_slope),
       .s24_first_i(s24_first),
       .s26_lateral_i(s26_lateral),
-      .s31_half_o(start_o.half),
+      .s31_quarter_o(start_o.quarter),
       .s31_rest_o(start_o.rest),
       .s31_slope_o(start_o.slope),
       .s31_low_o(start_o.low)
@@ -274,7 +274,7 @@ module gridrt_setup #(
       .data_o({ignore_o, any_hit_o, p0_o, d_o})
   );
   gridrt_delay #(
-      .WIDTH (B + 5),
+      .WIDTH (B + 6),
       .CLOCKS(9)
   ) i_dominant (
       .clk_i,

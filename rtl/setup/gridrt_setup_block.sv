@@ -1,5 +1,5 @@
 // The parts of a ray's state that need no division, in clocks 10 to 31 of gridrt_setup: entry face,
-// block-slabs, the halves of P1, and the address of P0's block.
+// block-slabs, the quarters of P1, and the address of P0's block.
 module gridrt_setup_block #(
     localparam int unsigned EDGE_W = gridrt_state_pkg::EDGE_W,
     localparam int unsigned AXIS_W = gridrt_pkg::AXIS_W,
@@ -16,16 +16,16 @@ module gridrt_setup_block #(
     input  logic [2:0]              s2_neg_i,
     input  logic [2:0][ AXIS_W-3:0] s10_block_i,   // per axis: block of P0, mirrored
     input  logic [EDGE_W-1:0]       s10_edge_i,    // of the dominant axis
-    input  logic [1:0]              s11_first_i,   // half-slab of P0 in its block
+    input  logic [2:0]              s11_first_i,   // quarter-slab of P0 in its block
     input  logic [1:0]              s12_axis_i,
     input  logic [1:0]              s12_lateral_i, // 12 and 13: a lateral axis
-    input  logic [EDGE_W-1:0]       s12_ahead_i,   // twice the distance to the next half-face
-    input  logic [2:0][ AXIS_W-1:0] s12_end_i,     // half-voxel of P1, from P0's block's first one
+    input  logic [EDGE_W-1:0]       s12_ahead_i,   // four times the distance to the next quarter-face
+    input  logic [2:0][ AXIS_W:0]   s12_end_i,     // quarter of P1, from P0's block's first one
     output logic [BLOCK_W-1:0]      s31_block_o,
     output logic [SLABS_W-1:0]      s31_slabs_o,
-    output logic [1:0]              s31_last_o,
+    output logic [2:0]              s31_last_o,
     output logic [DIST_W:0]         s31_enter_o,
-    output logic [1:0][ AXIS_W-1:0] s31_end_o      // on the lateral axes
+    output logic [1:0][ AXIS_W:0]   s31_end_o      // on the lateral axes
 );
   logic even_clock, odd_clock;
   assign even_clock = enable_i && odd_i;
@@ -58,23 +58,23 @@ module gridrt_setup_block #(
     end
   end
 
-  // 12-14: twice the way from P0 to the next half-face, and from there back to the block's entry
-  // face; their difference is even.
-  logic [2:0] steps;
-  logic [EDGE_W+1:0] s12_back, enter;
+  // 12-14: four times the way from P0 to the next quarter-face, and from there back to the block's entry
+  // face; four divides their difference.
+  logic [3:0] steps;
+  logic [EDGE_W+2:0] s12_back, enter;
   logic [DIST_W:0] s14_enter;
-  logic [AXIS_W-1:0] s14_end;
-  assign steps = {1'b0, s11_first_i} + 3'd1;
-  assign enter = {2'b00, s12_ahead_i} - s12_back;
+  logic [AXIS_W:0] s14_end;
+  assign steps = {1'b0, s11_first_i} + 4'd1;
+  assign enter = {3'b000, s12_ahead_i} - s12_back;
   always_ff @(posedge clk_i) begin
     if (even_clock) begin
       s12_back <= s10_edge_i * steps;
-      s14_enter <= enter[EDGE_W+1:1];
+      s14_enter <= enter[EDGE_W+2:2];
       s14_end <= s12_axis_i[1] ? s12_end_i[2] : s12_axis_i[0] ? s12_end_i[1] : s12_end_i[0];
     end
   end
   gridrt_delay #(
-      .WIDTH (BLOCK_W + AXIS_W + DIST_W + 1),
+      .WIDTH (BLOCK_W + AXIS_W + DIST_W + 2),
       .CLOCKS(9)
   ) i_meta (
       .clk_i,
@@ -85,9 +85,9 @@ module gridrt_setup_block #(
   );
 
   // The lateral axes' ends, one after the other.
-  logic [AXIS_W-1:0] s13_end, s30_end, s31_end;
+  logic [AXIS_W:0] s13_end, s30_end, s31_end;
   gridrt_delay #(
-      .WIDTH (AXIS_W),
+      .WIDTH (AXIS_W + 1),
       .CLOCKS(17)
   ) i_end (
       .clk_i,
@@ -106,5 +106,5 @@ module gridrt_setup_block #(
   assign s31_end_o = {s30_end, s31_end};
 
   logic unused;
-  assign unused = &{1'b0, half_blocks_i, enter[0]};
+  assign unused = &{1'b0, half_blocks_i, enter[1:0]};
 endmodule

@@ -1,5 +1,5 @@
-// How much the lateral axes move, in clocks 9 to 25 of gridrt_setup: per half-slab, and within the
-// partial half-slab from P0 to the next half-face. One axis after the other.
+// How much the lateral axes move, in clocks 9 to 25 of gridrt_setup: per quarter-slab, and within
+// the partial quarter-slab from P0 to the next quarter-face. One axis after the other.
 module gridrt_setup_increment #(
     localparam int unsigned EDGE_W = gridrt_state_pkg::EDGE_W,
     localparam int unsigned MAX_B = gridrt_pkg::MAX_B,
@@ -13,7 +13,7 @@ module gridrt_setup_increment #(
     input  logic                 s9_valid_i,     // in clocks 9 and 10
     input  logic [PRODUCT_W-1:0] s9_product_i,   // length on this axis * edge of the dominant axis
     input  logic [MAX_B-1:0]     s9_length_i,    // of the dominant axis
-    input  logic [EDGE_W-1:0]    s12_ahead_i,    // twice the distance to the next half-face
+    input  logic [EDGE_W-1:0]    s12_ahead_i,    // four times the distance to the next quarter-face
     input  logic [MAX_B-1:0]     s12_lateral_i,  // length on this axis
     input  logic                 s13_valid_i,    // in clocks 13 and 14
     input  logic [MAX_B-1:0]     s13_length_i,
@@ -22,8 +22,8 @@ module gridrt_setup_increment #(
     output logic [SLOPE_W-1:0]   s24_slope_o
 );
   localparam int unsigned UNIT_SHIFT = gridrt_state_pkg::UNIT_SHIFT;
-  // The partial half-slab needs fewer bits behind the point: its error does not grow.
-  localparam int unsigned PARTIAL_BITS = 3;
+  // The partial quarter-slab needs fewer bits behind the point: its error does not grow.
+  localparam int unsigned PARTIAL_BITS = 4;
   if (gridrt_pkg::FRACTION - PARTIAL_BITS != SLOPE_W - PARTIAL_W) begin : gen_illegal
     $error("gridrt_setup_increment: the partial increment has %0d bits behind the point",
            PARTIAL_BITS);
@@ -53,7 +53,7 @@ module gridrt_setup_increment #(
     if (enable_i) s13_product <= s12_ahead_i * s12_lateral_i;
   end
   gridrt_divide_pipe #(
-      .DIVIDEND_W(PRODUCT_W + PARTIAL_BITS - 1),
+      .DIVIDEND_W(PRODUCT_W + PARTIAL_BITS - 2),
       .DIVISOR_W(MAX_B),
       .QUOTIENT_W(PARTIAL_W),
       .STEP(2)
@@ -62,7 +62,7 @@ module gridrt_setup_increment #(
       .rst_ni,
       .enable_i,
       .valid_i(s13_valid_i && s13_length_i != '0),
-      .dividend_i({s13_product, (PARTIAL_BITS - 1)'(0)}),
+      .dividend_i({s13_product, (PARTIAL_BITS - 2)'(0)}),
       .divisor_i(s13_length_i),
       .valid_o(s23_moving),
       .quotient_o(s23_partial_o),

@@ -152,6 +152,6 @@ module gridrt_records (
   assign state_o = state;
 
   logic unused;
-  assign unused = &{1'b0, block.padding, voxel.padding, reference_.padding, reference_.octants,
+  assign unused = &{1'b0, block.padding, voxel.padding, reference_.padding, reference_.quarters,
                     vertex.padding, header_i};
 endmodule

@@ -10,7 +10,7 @@ module gridrt_shell #(
     parameter int unsigned PES = 4,
     parameter int unsigned BLOCKS = 4096,
     parameter int unsigned CELLS = 8192,
-    parameter int unsigned REFS = 10240,
+    parameter int unsigned REFS = 8192,
     parameter int unsigned TRIS = 4096,
     parameter int unsigned VERTS = 2560,
     parameter int unsigned MAX_PAYLOAD = 16384,

@@ -1,111 +1,119 @@
-// The march on one lateral axis, clocks 2 to 7 of a step: the half-voxels in which the ray is at the
-// five half-slab faces of a block-slab, and its position where the next block-slab to be looked at
-// begins, one to seven of them ahead. The position is rest + slope per half-slab, modulo a half-voxel
-// of edge * 2^UNIT_SHIFT; no increment is longer than a half-voxel.
+// The march on one lateral axis, clocks 2 to 9 of a step: the quarters of voxels in which the ray is at
+// the nine quarter-slab faces of a block-slab, and its position where the next block-slab to be looked
+// at begins, one to seven of them ahead. The position is rest + slope per quarter-slab, modulo a quarter
+// of edge * 2^UNIT_SHIFT; no increment is longer than a quarter.
 module gridrt_march_lateral (
     input  logic                                              clk_i,
-    input  logic [4:0]                                        valid_i,     // of clocks 6 to 2
-    input  logic [2:0]                                        s2_half_i,   // signed
-    input  logic [1:0]                                        s2_low_i,
-    input  logic [gridrt_pkg::AXIS_W-1:0]                     s2_limit_i,
+    input  logic [6:0]                                        valid_i,     // of clocks 8 to 2
+    input  logic [3:0]                                        s2_quarter_i,  // signed
+    input  logic [2:0]                                        s2_low_i,
+    input  logic [gridrt_pkg::AXIS_W:0]                       s2_limit_i,
     input  logic [gridrt_state_pkg::REST_W-1:0]               s2_rest_i,
     input  logic [gridrt_state_pkg::REST_W:0]                 s2_slope_i,
     input  logic [gridrt_state_pkg::EDGE_W-1:0]               s2_edge_i,
     input  logic [2:0]                                        s3_ahead_i,  // 1 .. 7
-    output logic [4:0][2:0]                                   s5_sample_o,
-    output logic [gridrt_state_pkg::REST_W-1:0]               s7_rest_o,
-    output logic [4:0]                                        s7_halves_o  // half-voxels passed
+    output logic [8:0][3:0]                                   s7_sample_o,
+    output logic [gridrt_state_pkg::REST_W-1:0]               s9_rest_o,
+    output logic [5:0]                                        s9_quarters_o  // passed
 );
   localparam int unsigned REST_W = gridrt_state_pkg::REST_W;
   localparam int unsigned EDGE_W = gridrt_state_pkg::EDGE_W;
   localparam int unsigned SHIFT = gridrt_state_pkg::UNIT_SHIFT;
   localparam int unsigned SIGN = REST_W + 1;  // of positions at the samples
+  localparam int unsigned PAIRS = 4;
 
-  // Clock 2: the increment of one half-slab with one half-voxel taken off. Below SHIFT it is the slope.
-  logic [SIGN-SHIFT:0] s3_one, s4_one;
-  logic [REST_W-1:0] s3_rest;
-  logic [REST_W:0] s3_slope, s4_slope;
-  logic [2:0] s3_half, s3_limit, s4_limit;
-  logic [1:0] s3_low, s4_low;
-  logic [EDGE_W-1:0] s3_edge, s4_edge;
-  always_ff @(posedge clk_i) begin
-    if (valid_i[0]) begin
-      s3_one <= {1'b0, s2_slope_i[REST_W:SHIFT]} - {1'b0, s2_edge_i};
-      s3_rest <= s2_rest_i;
-      s3_slope <= s2_slope_i;
-      s3_half <= s2_half_i;
-      s3_low <= s2_low_i;
-      s3_limit <= (s2_limit_i[gridrt_pkg::AXIS_W-1:3] != '0) ? 3'd7 : s2_limit_i[2:0];
-      s3_edge <= s2_edge_i;
-    end
-  end
-
-  // A position that is not negative goes on by the increment less a half-voxel; a negative one stands
-  // for that plus a half-voxel, and goes on by the increment. Where what comes out is not negative, the
-  // ray has come to the next half-voxel.
+  // A position that is not negative goes on by the increment less a quarter; a negative one stands for
+  // that plus a quarter, and goes on by the increment. Where what comes out is not negative, the ray has
+  // come to the next quarter.
   function automatic logic [SIGN:0] on(logic [SIGN:0] at, logic [SIGN-SHIFT:0] one,
                                        logic [REST_W:0] slope);
     on = at + {at[SIGN] ? {1'b0, slope[REST_W:SHIFT]} : one, slope[SHIFT-1:0]};
   endfunction
 
-  // Clock 3: the first two samples.
-  logic [SIGN:0] first, second, s4_second;
-  logic [3:0] s4_half_0, s4_half_1, s4_half_2;  // signed, -4 .. 5
-  assign first = {2'b00, s3_rest} + {s3_one, s3_slope[SHIFT-1:0]};
-  assign second = on(first, s3_one, s3_slope);
+  // A quarter, held between P0's and P1's.
+  function automatic logic [3:0] held(logic [4:0] quarter, logic [2:0] low, logic [3:0] limit);
+    held = quarter[3:0];
+    if (quarter[4] || quarter[3:0] < {1'b0, low}) held = {1'b0, low};
+    if (held > limit) held = limit;
+  endfunction
+
+  // Clock 2: the increment with one quarter taken off. Below SHIFT it is the slope.
+  // Then two samples a clock, in clocks 3 to 6: index p of what follows is that of clock 3 + p.
+  logic [PAIRS-1:0][SIGN-SHIFT:0] one;
+  logic [PAIRS-1:0][REST_W:0] slope;
+  logic [PAIRS-1:0][SIGN:0] at, first, second;
+  logic [PAIRS-1:1][SIGN:0] reached;
+  logic [PAIRS-1:0][4:0] quarter;  // of the last sample before, signed
+  logic [PAIRS-1:0][2:0] low;
+  logic [PAIRS-1:0][3:0] limit;
+  logic [REST_W-1:0] s3_rest;
+  logic [EDGE_W-1:0] s3_edge, s4_edge;
+  assign at = {reached, 2'b00, s3_rest};
+  always_comb begin
+    for (int unsigned p = 0; p < PAIRS; p++) begin
+      first[p] = on(at[p], one[p], slope[p]);
+      second[p] = on(first[p], one[p], slope[p]);
+    end
+  end
   always_ff @(posedge clk_i) begin
-    if (valid_i[1]) begin
-      s4_one <= s3_one;
-      s4_slope <= s3_slope;
-      s4_low <= s3_low;
-      s4_limit <= s3_limit;
-      s4_half_0 <= {s3_half[2], s3_half};
-      s4_half_1 <= {s3_half[2], s3_half} + 4'(!first[SIGN]);
-      s4_half_2 <= {s3_half[2], s3_half} + 4'(!first[SIGN]) + 4'(!second[SIGN]);
-      s4_second <= second;
-      s4_edge <= s3_edge;
+    if (valid_i[0]) begin
+      one[0] <= {1'b0, s2_slope_i[REST_W:SHIFT]} - {1'b0, s2_edge_i};
+      slope[0] <= s2_slope_i;
+      s3_rest <= s2_rest_i;
+      quarter[0] <= {s2_quarter_i[3], s2_quarter_i};
+      low[0] <= s2_low_i;
+      limit[0] <= (s2_limit_i[gridrt_pkg::AXIS_W:4] != '0) ? 4'd15 : s2_limit_i[3:0];
+      s3_edge <= s2_edge_i;
+    end
+    if (valid_i[1]) s4_edge <= s3_edge;
+    for (int unsigned p = 1; p < PAIRS; p++) begin
+      if (valid_i[p]) begin
+        one[p] <= one[p-1];
+        slope[p] <= slope[p-1];
+        reached[p] <= second[p-1];
+        quarter[p] <= quarter[p-1] + 5'(!first[p-1][SIGN]) + 5'(!second[p-1][SIGN]);
+        low[p] <= low[p-1];
+        limit[p] <= limit[p-1];
+      end
     end
   end
 
-  // Clock 4: the last two, from the second; all held between P0's half and P1's.
-  function automatic logic [2:0] held(logic [3:0] half, logic [1:0] low, logic [2:0] limit);
-    held = half[2:0];
-    if (half[3] || half[2:0] < {1'b0, low}) held = {1'b0, low};
-    if (held > limit) held = limit;
-  endfunction
-  logic [SIGN:0] third, fourth;
-  logic [2:0] plus_0, plus_1, plus_2;
+  // The samples of a clock are told apart by the signs alone, so the choices are held before.
+  logic [PAIRS-1:0][3:0] plus_0, plus_1, plus_2;
+  logic [PAIRS-1:0][1:0][3:0] pair;
   always_comb begin
-    third = on(s4_second, s4_one, s4_slope);
-    fourth = on(third, s4_one, s4_slope);
-    plus_0 = held(s4_half_2, s4_low, s4_limit);
-    plus_1 = held(s4_half_2 + 4'd1, s4_low, s4_limit);
-    plus_2 = held(s4_half_2 + 4'd2, s4_low, s4_limit);
-  end
-  always_ff @(posedge clk_i) begin
-    if (valid_i[2]) begin
-      s5_sample_o[0] <= held(s4_half_0, s4_low, s4_limit);
-      s5_sample_o[1] <= held(s4_half_1, s4_low, s4_limit);
-      s5_sample_o[2] <= plus_0;
-      s5_sample_o[3] <= third[SIGN] ? plus_0 : plus_1;
-      s5_sample_o[4] <= (third[SIGN] && fourth[SIGN]) ? plus_0
-                      : (third[SIGN] || fourth[SIGN]) ? plus_1 : plus_2;
+    for (int unsigned p = 0; p < PAIRS; p++) begin
+      plus_0[p] = held(quarter[p], low[p], limit[p]);
+      plus_1[p] = held(quarter[p] + 5'd1, low[p], limit[p]);
+      plus_2[p] = held(quarter[p] + 5'd2, low[p], limit[p]);
+      pair[p][0] = first[p][SIGN] ? plus_0[p] : plus_1[p];
+      pair[p][1] = (first[p][SIGN] && second[p][SIGN]) ? plus_0[p]
+                 : (first[p][SIGN] || second[p][SIGN]) ? plus_1[p] : plus_2[p];
     end
+  end
+  logic [2:0][3:0] s4_sample;
+  logic [4:0][3:0] s5_sample;
+  logic [6:0][3:0] s6_sample;
+  always_ff @(posedge clk_i) begin
+    if (valid_i[1]) s4_sample <= {pair[0], plus_0[0]};
+    if (valid_i[2]) s5_sample <= {pair[1], s4_sample};
+    if (valid_i[3]) s6_sample <= {pair[2], s5_sample};
+    if (valid_i[4]) s7_sample_o <= {pair[3], s6_sample};
   end
 
   gridrt_march_ahead i_ahead (
       .clk_i,
-      .valid_i(valid_i[4:1]),
+      .valid_i(valid_i[6:1]),
       .s3_ahead_i,
       .s3_rest_i(s3_rest),
-      .s3_slope_i(s3_slope),
-      .s4_slope_i(s4_slope),
+      .s3_slope_i(slope[0]),
+      .s4_slope_i(slope[1]),
       .s4_edge_i(s4_edge),
-      .s7_rest_o,
-      .s7_halves_o
+      .s9_rest_o,
+      .s9_quarters_o
   );
 
   // Of the last sample the sign alone is needed.
   logic unused;
-  assign unused = &{1'b0, fourth};
+  assign unused = &{1'b0, second};
 endmodule

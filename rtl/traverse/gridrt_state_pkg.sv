@@ -12,9 +12,9 @@ package gridrt_state_pkg;
   localparam int unsigned EDGE_W = 18;  // a voxel's edge, up to 2^17
   localparam int unsigned SPAN_W = 19;
   localparam int unsigned SLABS_W = 8;  // block-slabs after the first one
-  // A half-voxel is edge * 2^UNIT_SHIFT units of a lateral position, a unit 2^-FRACTION steps.
+  // A quarter-voxel is edge * 2^UNIT_SHIFT units of a lateral position, a unit 2^-FRACTION steps.
   localparam int unsigned UNIT_SHIFT = 11;
-  localparam int unsigned REST_W = 28;  // within a half-voxel
+  localparam int unsigned REST_W = 28;  // within a quarter-voxel
   /* verilator lint_on UNUSEDPARAM */
 
   // Per axis x, y, z.
@@ -32,15 +32,15 @@ package gridrt_state_pkg;
     logic [2:0] neg;  // axes with a negative direction
     logic [BLOCK_W-1:0] block;  // address of the block
     logic [SLABS_W-1:0] slabs;  // block-slabs after this one
-    logic [1:0] first;  // first half-slab of this block-slab that holds a part of the segment
-    logic [1:0] last;  // last one, in the last block-slab
+    logic [2:0] first;  // first quarter-slab of this block-slab that holds a part of the segment
+    logic [2:0] last;  // last one, in the last block-slab
     logic signed [DIST_W:0] enter;  // the block-slab's entry face - P0, lattice steps
     // Lateral axes: [0] is axis + 1, [1] is axis + 2, modulo 3.
-    logic [1:0][2:0] half;  // half-voxel at the entry, from the block's first one: signed, -4 .. 3
-    logic [1:0][1:0] low;  // no sample lies below this half-voxel: P0's in the first block, then 0
-    logic [1:0][REST_W-1:0] rest;  // position within that half-voxel, below edge * 2^UNIT_SHIFT
-    logic [1:0][REST_W:0] slope;  // increment per half-slab, at most edge * 2^UNIT_SHIFT
-    logic [1:0][AXIS_W-1:0] limit;  // half-voxel of P1, from the block's first one
+    logic [1:0][3:0] quarter;  // at the entry, from the block's first one: signed, -8 .. 7
+    logic [1:0][2:0] low;  // no sample lies below this quarter: P0's in the first block, then 0
+    logic [1:0][REST_W-1:0] rest;  // position within that quarter, below edge * 2^UNIT_SHIFT
+    logic [1:0][REST_W:0] slope;  // increment per quarter-slab, at most edge * 2^UNIT_SHIFT
+    logic [1:0][AXIS_W:0] limit;  // quarter of P1, from the block's first one
   } start_t;
 
 endpackage

@@ -1,12 +1,12 @@
 // Traversal unit: marches its rays through the blocks of the grid, one block of one ray a clock, and
 // sends the voxels that they meet to an expander. Slot s belongs to the unit with INDEX = s % TUS.
 //
-// A step takes 8 clocks, so the slots take turns:
-//   0 a slot is chosen, or a ray starts        4 last two samples; position ahead, half-voxels off
-//   1 state and block memory are read          5 blocks and halves met; position; entries
-//   2 multiples of the increments              6 voxels met; position; the limit is asked
-//   3 block record; first two samples; jump    7 voxels leave; the slot may be chosen again
-//                                              8 address of the next block; state is written
+// A step takes 10 clocks, so the slots take turns:
+//   0 a slot is chosen, or a ray starts        7 neighbours met; position; entries
+//   1 state and block memory are read          8 voxels met; position; the limit is asked
+//   2 multiples of the increments              9 voxels leave; the slot may be chosen again
+//   3 block record; first two samples; jump    10 address of the next block; state is written
+//   4-6 two samples each; position ahead
 // A step that begins has room for its voxels in the queue to the expander, so nothing stalls.
 module gridrt_traverse #(
     parameter int unsigned B = 17,
@@ -54,7 +54,7 @@ module gridrt_traverse #(
   localparam int unsigned CELL_W = gridrt_pkg::CELL_W;
   localparam int unsigned EDGE_W = gridrt_state_pkg::EDGE_W;
   localparam int unsigned REST_W = gridrt_state_pkg::REST_W;
-  localparam int unsigned STATE_W = 192;  // of start_t
+  localparam int unsigned STATE_W = 200;  // of start_t
   localparam int unsigned INDEX_W = (COUNT > 1) ? $clog2(COUNT) : 1;
 
   if (TUS < 1 || TUS > 4 || INDEX >= TUS || SLOTS % TUS != 0 || SLOTS < TUS ||
@@ -78,9 +78,9 @@ module gridrt_traverse #(
   endfunction
 
   // 0: a ray that starts goes first; else the scheduler's choice.
-  logic [8:1] valid;
+  logic [10:1] valid;
   logic may_issue, start, grant, again;
-  logic [INDEX_W-1:0] grant_slot, s1_slot, s2_slot, s3_slot, s4_slot, s5_slot, s6_slot, s7_slot, s8_slot;
+  logic [INDEX_W-1:0] grant_slot, s1_slot, s2_slot, s3_slot, s4_slot, s5_slot, s6_slot, s7_slot, s8_slot, s9_slot, s10_slot;
   gridrt_state_pkg::start_t s1_start;
   logic s1_starts;
   assign start_ready_o = may_issue;
@@ -94,14 +94,14 @@ module gridrt_traverse #(
       .few_i,
       .idle_i,
       .again_i(again),
-      .again_slot_i(s7_slot),
+      .again_slot_i(s9_slot),
       .grant_o(grant),
       .slot_o(grant_slot)
   );
-  logic s8_writes;
+  logic s10_writes;
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) valid <= '0;
-    else valid <= {valid[7:1], start || grant};
+    else valid <= {valid[9:1], start || grant};
   end
   always_ff @(posedge clk_i) begin
     s1_starts <= start;
@@ -114,20 +114,22 @@ module gridrt_traverse #(
     if (valid[5]) s6_slot <= s5_slot;
     if (valid[6]) s7_slot <= s6_slot;
     if (valid[7]) s8_slot <= s7_slot;
+    if (valid[8]) s9_slot <= s8_slot;
+    if (valid[9]) s10_slot <= s9_slot;
   end
 
   // 1: state; the block looked at is the ray's block or a neighbour of it.
-  gridrt_state_pkg::start_t s1_stored, s1_state, s2_state, s3_state, s4_state, s5_state, s6_state, s7_state, s8_state, s8_next;
-  logic [1:0] s1_stored_sub, s1_sub, s2_sub, s3_sub, s4_sub, s5_sub, s6_sub, s6_next_sub, s7_next_sub, s8_sub;
-  logic [BLOCK_W-1:0] s1_stored_look, s1_look, s8_look;
+  gridrt_state_pkg::start_t s1_stored, s1_state, s2_state, s3_state, s4_state, s5_state, s6_state, s7_state, s8_state, s9_state, s10_state, s10_next;
+  logic [1:0] s1_stored_sub, s1_sub, s2_sub, s3_sub, s4_sub, s5_sub, s6_sub, s7_sub, s8_sub, s8_next_sub, s9_next_sub, s10_sub;
+  logic [BLOCK_W-1:0] s1_stored_look, s1_look, s10_look;
   gridrt_lutram #(
       .WIDTH(STATE_W + 2 + BLOCK_W),
       .DEPTH(COUNT)
   ) i_states (
       .clk_i,
-      .write_i(s8_writes),
-      .write_address_i(s8_slot),
-      .write_data_i({s8_next, s8_sub, s8_look}),
+      .write_i(s10_writes),
+      .write_address_i(s10_slot),
+      .write_data_i({s10_next, s10_sub, s10_look}),
       .read_address_i(s1_slot),
       .read_data_o({s1_stored, s1_stored_sub, s1_stored_look})
   );
@@ -157,8 +159,16 @@ module gridrt_traverse #(
       s6_state <= s5_state;
       s6_sub   <= s5_sub;
     end
-    if (valid[6]) s7_state <= s6_state;
-    if (valid[7]) s8_state <= s7_state;
+    if (valid[6]) begin
+      s7_state <= s6_state;
+      s7_sub   <= s6_sub;
+    end
+    if (valid[7]) begin
+      s8_state <= s7_state;
+      s8_sub   <= s7_sub;
+    end
+    if (valid[8]) s9_state <= s8_state;
+    if (valid[9]) s10_state <= s9_state;
   end
 
   // 2: constants in the order dominant axis, b, c.
@@ -173,95 +183,105 @@ module gridrt_traverse #(
   end
 
   // 3: the block's record, and how many block-slabs are left behind if its slab is done with.
-  logic s7_occupied;
-  logic [20:0] s7_record;
-  logic [2:0] s3_ahead, s6_jump, s7_jump;
+  logic s9_occupied;
+  logic [20:0] s9_record;
+  logic [2:0] s3_ahead, s8_jump, s9_jump;
   gridrt_march_record i_record (
       .clk_i,
-      .valid_i(valid[6:3]),
+      .valid_i(valid[8:3]),
       .s3_data_i(block_data_i),
       .s3_axis_i(s3_state.axis),
       .s3_neg_i(s3_state.neg),
       .s3_aside_i(s3_sub != 2'd0),
       .s3_ahead_o(s3_ahead),
-      .s6_jump_o(s6_jump),
-      .s7_jump_o(s7_jump),
-      .s7_occupied_o(s7_occupied),
-      .s7_record_o(s7_record)
+      .s8_jump_o(s8_jump),
+      .s9_jump_o(s9_jump),
+      .s9_occupied_o(s9_occupied),
+      .s9_record_o(s9_record)
   );
 
-  logic [1:0][4:0][2:0] s5_sample;
-  logic [1:0][REST_W-1:0] s7_rest;
-  logic [1:0][4:0] s7_halves_on;
+  logic [1:0][8:0][3:0] s7_sample;
+  logic [1:0][REST_W-1:0] s9_rest;
+  logic [1:0][5:0] s9_quarters_on;
   for (genvar n = 0; n < 2; n++) begin : gen_lateral
     gridrt_march_lateral i_lateral (
         .clk_i,
-        .valid_i(valid[6:2]),
-        .s2_half_i(s2_state.half[n]),
+        .valid_i(valid[8:2]),
+        .s2_quarter_i(s2_state.quarter[n]),
         .s2_low_i(s2_state.low[n]),
         .s2_limit_i(s2_state.limit[n]),
         .s2_rest_i(s2_state.rest[n]),
         .s2_slope_i(s2_state.slope[n]),
         .s2_edge_i(s2_edge[n+1]),
         .s3_ahead_i(s3_ahead),
-        .s5_sample_o(s5_sample[n]),
-        .s7_rest_o(s7_rest[n]),
-        .s7_halves_o(s7_halves_on[n])
+        .s7_sample_o(s7_sample[n]),
+        .s9_rest_o(s9_rest[n]),
+        .s9_quarters_o(s9_quarters_on[n])
     );
   end
 
-  // 3-6: distances, and whether there are as many block-slabs.
-  logic [2:0] s5_ahead;
-  logic [DIST_W:0] s6_enter;
-  logic [DIST_W-1:0] s6_near_enter, s7_near_enter, s7_far_enter;
-  logic s7_over;
+  // 5-8: distances, and whether there are as many block-slabs.
+  logic [EDGE_W-1:0] s3_edge, s4_edge;  // of the dominant axis
+  logic [2:0] s4_ahead, s5_ahead;
+  always_ff @(posedge clk_i) begin
+    if (valid[2]) s3_edge <= s2_edge[0];
+    if (valid[3]) begin
+      s4_edge <= s3_edge;
+      s4_ahead <= s3_ahead;
+    end
+    if (valid[4]) s5_ahead <= s4_ahead;
+  end
+  logic [2:0] s7_ahead;
+  logic [DIST_W:0] s8_enter;
+  logic [DIST_W-1:0] s8_near_enter, s9_near_enter, s9_far_enter;
+  logic s9_over;
   gridrt_march_way i_way (
       .clk_i,
-      .valid_i(valid[6:2]),
-      .s2_edge_i(s2_edge[0]),
-      .s3_ahead_i(s3_ahead),
-      .s5_enter_i(s5_state.enter),
-      .s5_slabs_i(s5_state.slabs),
-      .s5_ahead_o(s5_ahead),
-      .s6_enter_o(s6_enter),
-      .s6_near_enter_o(s6_near_enter),
-      .s7_near_enter_o(s7_near_enter),
-      .s7_far_enter_o(s7_far_enter),
-      .s7_over_o(s7_over)
+      .valid_i(valid[8:4]),
+      .s4_edge_i(s4_edge),
+      .s5_ahead_i(s5_ahead),
+      .s7_enter_i(s7_state.enter),
+      .s7_slabs_i(s7_state.slabs),
+      .s7_ahead_o(s7_ahead),
+      .s8_enter_o(s8_enter),
+      .s8_near_enter_o(s8_near_enter),
+      .s9_near_enter_o(s9_near_enter),
+      .s9_far_enter_o(s9_far_enter),
+      .s9_over_o(s9_over)
   );
 
-  // 5-6: voxels met, and the next neighbour to be looked at.
-  logic [3:1] s6_touched;
-  logic [7:0] s7_met;
-  gridrt_pkg::way_t s7_way;
-  logic s6_on, s7_on;  // on: to another block-slab
+  // 7-8: voxels met, and the next neighbour to be looked at.
+  logic [3:1] s8_touched;
+  logic [7:0] s9_met;
+  gridrt_pkg::way_t s9_way;
+  logic s8_on, s9_on;  // on: to another block-slab
   gridrt_block_voxels i_voxels (
       .clk_i,
-      .valid_i(valid[6:5]),
-      .s5_axis_i(s5_state.axis),
-      .s5_neg_i(s5_state.neg),
-      .s5_first_i(s5_state.first),
-      .s5_last_i((s5_state.slabs == '0) ? s5_state.last : 2'd3),
-      .s5_sub_i(s5_sub),
-      .s5_sample_i(s5_sample),
-      .s6_touched_o(s6_touched),
-      .s7_met_o(s7_met),
-      .s7_way_o(s7_way)
+      .valid_i(valid[8:7]),
+      .s7_axis_i(s7_state.axis),
+      .s7_neg_i(s7_state.neg),
+      .s7_first_i(s7_state.first),
+      .s7_last_i((s7_state.slabs == '0) ? s7_state.last : 3'd7),
+      .s7_sub_i(s7_sub),
+      .s7_sample_i(s7_sample),
+      .s8_touched_o(s8_touched),
+      .s9_met_o(s9_met),
+      .s9_way_o(s9_way)
   );
   always_comb begin
-    s6_next_sub = 2'd0;
-    if (s6_touched[3] && s6_sub < 2'd3) s6_next_sub = 2'd3;
-    if (s6_touched[2] && s6_sub < 2'd2) s6_next_sub = 2'd2;
-    if (s6_touched[1] && s6_sub < 2'd1) s6_next_sub = 2'd1;
-    if (s6_jump != 3'd0) s6_next_sub = 2'd0;
-    s6_on = s6_next_sub == 2'd0;
+    s8_next_sub = 2'd0;
+    if (s8_touched[3] && s8_sub < 2'd3) s8_next_sub = 2'd3;
+    if (s8_touched[2] && s8_sub < 2'd2) s8_next_sub = 2'd2;
+    if (s8_touched[1] && s8_sub < 2'd1) s8_next_sub = 2'd1;
+    if (s8_jump != 3'd0) s8_next_sub = 2'd0;
+    s8_on = s8_next_sub == 2'd0;
   end
 
-  // 6: is all that follows beyond the best hit?
+  // 8: is all that follows beyond the best hit?
   logic [COUNT-1:0] limited;
-  logic [DIST_W-1:0] s6_limit;
-  logic s7_killed, s7_ends, mine;
-  logic [DIST_W:0] s7_enter;
+  logic [DIST_W-1:0] s8_limit;
+  logic s9_killed, s9_ends, mine;
+  logic [DIST_W:0] s9_enter;
   assign mine = interrupt_i.valid && CANCEL && slot_of(place(interrupt_i.slot)) == interrupt_i.slot;
   gridrt_lutram #(
       .WIDTH(DIST_W),
@@ -271,8 +291,8 @@ module gridrt_traverse #(
       .write_i(mine),
       .write_address_i(place(interrupt_i.slot)),
       .write_data_i(interrupt_i.limit),
-      .read_address_i(s6_slot),
-      .read_data_o(s6_limit)
+      .read_address_i(s8_slot),
+      .read_data_o(s8_limit)
   );
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
@@ -285,19 +305,19 @@ module gridrt_traverse #(
     end
   end
   always_ff @(posedge clk_i) begin
-    if (valid[6]) begin
-      s7_on <= s6_on;
-      s7_next_sub <= s6_next_sub;
-      s7_killed <= limited[s6_slot] && s6_near_enter > s6_limit;
-      s7_ends <= limited[s6_slot] && (s6_enter[DIST_W] ? 1'b0 : s6_enter[DIST_W-1:0] > s6_limit);
-      s7_enter <= s6_enter;
+    if (valid[8]) begin
+      s9_on <= s8_on;
+      s9_next_sub <= s8_next_sub;
+      s9_killed <= limited[s8_slot] && s8_near_enter > s8_limit;
+      s9_ends <= limited[s8_slot] && (s8_enter[DIST_W] ? 1'b0 : s8_enter[DIST_W-1:0] > s8_limit);
+      s9_enter <= s8_enter;
     end
   end
 
-  // 7: out with the voxels.
+  // 9: out with the voxels.
   logic [7:0] cand;
   logic push, done;
-  assign done = s7_killed || (s7_on && (s7_over || s7_ends));
+  assign done = s9_killed || (s9_on && (s9_over || s9_ends));
   gridrt_march_out #(
       .QUEUE(QUEUE)
   ) i_out (
@@ -305,75 +325,73 @@ module gridrt_traverse #(
       .rst_ni,
       .issue_i(start || grant),
       .may_issue_o(may_issue),
-      .s7_valid_i(valid[7]),
-      .s7_open_i(s7_occupied && !s7_killed),
-      .s7_slot_i(slot_of(s7_slot)),
-      .s7_axis_i(s7_state.axis),
-      .s7_neg_i(s7_state.neg),
-      .s7_base_i(s7_record[8+:CELL_W]),
-      .s7_occ_i(s7_record[7:0]),
-      .s7_met_i(s7_met),
-      .s7_way_i(s7_way),
-      .s7_near_enter_i(s7_near_enter),
-      .s7_far_enter_i(s7_far_enter),
-      .s7_cand_o(cand),
-      .s7_push_o(push),
-      .s7_count_o(inc_count_o),
+      .s9_valid_i(valid[9]),
+      .s9_open_i(s9_occupied && !s9_killed),
+      .s9_slot_i(slot_of(s9_slot)),
+      .s9_axis_i(s9_state.axis),
+      .s9_neg_i(s9_state.neg),
+      .s9_base_i(s9_record[8+:CELL_W]),
+      .s9_occ_i(s9_record[7:0]),
+      .s9_met_i(s9_met),
+      .s9_way_i(s9_way),
+      .s9_near_enter_i(s9_near_enter),
+      .s9_far_enter_i(s9_far_enter),
+      .s9_cand_o(cand),
+      .s9_push_o(push),
+      .s9_count_o(inc_count_o),
       .bundle_valid_o,
       .bundle_ready_i,
       .bundle_o
   );
-  assign again = valid[7] && !done;
+  assign again = valid[9] && !done;
   assign inc_valid_o = push;
-  assign inc_slot_o = slot_of(s7_slot);
-  assign done_valid_o = valid[7] && done;
-  assign done_slot_o = slot_of(s7_slot);
-  assign step_o = valid[7];
+  assign inc_slot_o = slot_of(s9_slot);
+  assign done_valid_o = valid[9] && done;
+  assign done_slot_o = slot_of(s9_slot);
+  assign step_o = valid[9];
 
-  // 4-8: the next block.
-  logic s8_going;
+  // 6-10: the next block.
+  logic s10_going;
   gridrt_march_next i_next (
       .clk_i,
-      .valid_i(valid[7:3]),
+      .valid_i(valid[9:5]),
       .stride_i(grid_i.stride[2:1]),
-      .s3_axis_i(s3_state.axis),
-      .s3_neg_i(s3_state.neg),
-      .s5_ahead_i(s5_ahead),
-      .s5_slabs_i(s5_state.slabs),
-      .s7_on_i(s7_on),
-      .s7_sub_i(s7_next_sub),
-      .s7_half_i(s7_state.half),
-      .s7_halves_i(s7_halves_on),
-      .s7_rest_i(s7_rest),
-      .s7_enter_i(s7_enter),
-      .s8_state_i(s8_state),
-      .s8_next_o(s8_next),
-      .s8_sub_o(s8_sub),
-      .s8_look_o(s8_look)
+      .s5_axis_i(s5_state.axis),
+      .s5_neg_i(s5_state.neg),
+      .s7_ahead_i(s7_ahead),
+      .s7_slabs_i(s7_state.slabs),
+      .s9_on_i(s9_on),
+      .s9_sub_i(s9_next_sub),
+      .s9_quarter_i(s9_state.quarter),
+      .s9_quarters_i(s9_quarters_on),
+      .s9_rest_i(s9_rest),
+      .s9_enter_i(s9_enter),
+      .s10_state_i(s10_state),
+      .s10_next_o(s10_next),
+      .s10_sub_o(s10_sub),
+      .s10_look_o(s10_look)
   );
   always_ff @(posedge clk_i) begin
-    if (valid[7]) s8_going <= !done;
+    if (valid[9]) s10_going <= !done;
   end
-  assign s8_writes = valid[8] && s8_going;
+  assign s10_writes = valid[10] && s10_going;
 
   // For --explain.
-  logic [BLOCK_W-1:0] s2_look, s3_look, s4_look, s5_look, s6_look, s7_look;
+  logic [7:0][BLOCK_W-1:0] look;  // in clocks 2 to 9
   always_ff @(posedge clk_i) begin
-    if (valid[1]) s2_look <= s1_look;
-    if (valid[2]) s3_look <= s2_look;
-    if (valid[3]) s4_look <= s3_look;
-    if (valid[4]) s5_look <= s4_look;
-    if (valid[5]) s6_look <= s5_look;
-    if (valid[6]) s7_look <= s6_look;
+    if (valid[1]) look[0] <= s1_look;
+    for (int unsigned i = 1; i < 8; i++) begin
+      if (valid[i+1]) look[i] <= look[i-1];
+    end
   end
-  assign tap_valid_o = valid[7];
-  assign tap_slot_o = slot_of(s7_slot);
-  assign tap_block_o = s7_look;
+  assign tap_valid_o = valid[9];
+  assign tap_slot_o = slot_of(s9_slot);
+  assign tap_block_o = look[7];
   assign tap_cand_o = cand;
-  assign tap_jump_o = s7_jump;
+  assign tap_jump_o = s9_jump;
 
   logic unused;
-  assign unused = &{1'b0, s7_state};
+  assign unused = &{1'b0, s9_state};
 
 `ifdef GRIDRT_ASSERT
   always_ff @(posedge clk_i) begin
