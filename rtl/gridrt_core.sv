@@ -10,7 +10,7 @@ module gridrt_core #(
     parameter int unsigned QUEUE = 16,
     parameter int unsigned AHEAD = 2,
     parameter int unsigned BLOCKS = 4096,
-    parameter int unsigned CELLS = 8192,
+    parameter int unsigned CELLS = 6144,
     parameter int unsigned REFS = 8192,
     parameter int unsigned TRIS = 4096,
     parameter int unsigned VERTS = 2560,

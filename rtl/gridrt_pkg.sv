@@ -106,7 +106,7 @@ package gridrt_pkg;
     logic       ray;  // a ray has been committed
     logic [2:0] steps;  // traversal steps
     logic [2:0] tests;  // exact tests
-    logic [4:0] masked;  // references left out by their quarters
+    logic [5:0] masked;  // references left out by their quarters
     logic [2:0] interrupts;  // tasks and voxels cancelled by an earlier hit
     logic       feedback_wait;  // a hit that waited for earlier voxels has been committed
     logic       in_flight;  // at least one ray is in the engine

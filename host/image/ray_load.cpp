@@ -25,6 +25,7 @@ constexpr std::size_t kViews = kRayGroups / 2;
 constexpr double kSpread = 0.4;
 constexpr double kTraversalUnits = 4.0;  ///< of the board: a block a clock each
 constexpr double kExpanders = 2.0;       ///< a voxel a clock each
+constexpr std::size_t kRead = 8;         ///< references that a PE reads a clock
 
 glm::dvec3 direction_of(std::size_t view) {
   const auto cell = static_cast<int>(view < kViews / 2 ? view : view + 1);  // 13 is the middle
@@ -233,7 +234,7 @@ GridLoad RaySample::measure(const VoxelGrid& grid, const VoxelLists& lists) {
         if ((cells_of(r.quarters) & cells) != 0) ++tests;
       }
       tasks += 1.0;
-      const std::size_t clocks = std::max({(list.size() + 1) / 2, tests, std::size_t{1}});
+      const std::size_t clocks = std::max((list.size() + kRead - 1) / kRead, tests);
       load.work[s.group][grid.index(v.voxel)] += share * static_cast<float>(clocks);
     });
   }

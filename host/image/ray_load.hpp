@@ -20,7 +20,7 @@ namespace gridrt {
 inline constexpr std::size_t kRayGroups = 52;
 
 /// What the sample rays do on one grid; numbers are means of a ray. Work is the clocks that a PE
-/// spends with a voxel's list: it reads two references and tests one a clock.
+/// spends with a voxel's list: it reads eight references a clock and tests one.
 struct GridLoad {
   double steps = 0.0;  ///< blocks looked at
   double tasks = 0.0;  ///< voxels with triangles that are met

@@ -1,7 +1,7 @@
 // The cell records, {pe, count, first}: which references a voxel has and whose they are. 26 bits take
 // three block memories of 9 bits for each 2,048 of them.
 module gridrt_cells #(
-    parameter int unsigned CELLS = 8192,
+    parameter int unsigned CELLS = 6144,
     parameter int unsigned EXPS  = 2,     // 1 or 2: the memory has two ports
     localparam int unsigned CELL_W = gridrt_pkg::CELL_W,
     localparam int unsigned RECORD_W = gridrt_pkg::REF_W + gridrt_pkg::LIST_W + gridrt_pkg::PE_W

@@ -22,7 +22,7 @@ module gridrt_counts #(
     input  logic                 [SLOTS-1:0]      few_i,
     input  logic                 [EXPS-1:0]       expand_drop_i,
     input  logic                 [PES-1:0]        test_i,
-    input  logic                 [PES-1:0][2:0]   masked_i,
+    input  logic                 [PES-1:0][3:0]   masked_i,
     input  logic                 [PES-1:0]        cancelled_i,
     input  logic                 [PES-1:0]        queue_full_i,
     input  logic                 [PES-1:0]        pe_busy_i,
@@ -68,7 +68,7 @@ module gridrt_counts #(
     end
     for (int unsigned p = 0; p < PES; p++) begin
       now.tests = now.tests + 3'(test_i[p]);
-      now.masked = now.masked + 5'(masked_i[p]);
+      now.masked = now.masked + 6'(masked_i[p]);
       now.interrupts = now.interrupts + 3'(cancelled_i[p]);
       now.queue_full = now.queue_full + 3'(queue_full_i[p]);
       now.pe_idle = now.pe_idle + 3'(in_flight && !pe_busy_i[p]);

@@ -14,7 +14,7 @@ module gridrt_engine #(
     parameter int unsigned QUEUE = 16,  // tasks that wait in a PE
     parameter int unsigned AHEAD = 2,  // tasks of a ray in advance: no step with so many pending
     parameter int unsigned BLOCKS = 4096,  // memory sizes, records; the last three for each PE
-    parameter int unsigned CELLS = 8192,
+    parameter int unsigned CELLS = 6144,
     parameter int unsigned REFS = 8192,
     parameter int unsigned TRIS = 4096,
     parameter int unsigned VERTS = 2560,
@@ -269,7 +269,7 @@ module gridrt_engine #(
 
   // PEs.
   logic [PES-1:0] drop_cancelled, test, busy, divider_wait, tested, test_hit;
-  logic [PES-1:0][2:0] masked;
+  logic [PES-1:0][3:0] masked;
   logic [PES-1:0][TRI_W-1:0] tested_triangle;
   for (genvar p = 0; p < PES; p++) begin : gen_pe
     logic one_valid, one_ready, event_from, event_taken;

@@ -6,7 +6,7 @@ module gridrt_walk #(
     parameter int unsigned TUS = 4,  // 1 to 4
     parameter int unsigned EXPS = 2,  // 1 or 2, at most TUS
     parameter int unsigned BLOCKS = 4096,
-    parameter int unsigned CELLS = 8192,
+    parameter int unsigned CELLS = 6144,
     parameter bit CANCEL = 1'b1,
     localparam int unsigned SLOT_W = gridrt_pkg::SLOT_W,
     localparam int unsigned BLOCK_W = gridrt_pkg::BLOCK_W,

@@ -1,4 +1,4 @@
-// From tasks to references: reads four references a clock, leaves out those that share no cell of
+// From tasks to references: reads eight references a clock, leaves out those that share no cell of
 // the voxel with the ray, and gives the rest one a clock, `last` on the last one of its task. The next
 // task follows without a gap. A task in which nothing passes ends with a pulse of `none` and takes no
 // clock from the others. A task whose ray has been hit before the task's slab is given up.
@@ -26,13 +26,14 @@ module gridrt_fetch #(
     output logic [gridrt_pkg::SLOT_W-1:0] slot_o,
     output logic [gridrt_pkg::TRI_W-1:0]  triangle_o,
     output gridrt_pkg::slot_event_t       none_o,  // a task ends without a reference to be tested
-    output logic [2:0]                    masked_o,  // references left out, a pulse for counters
+    output logic [3:0]                    masked_o,  // references left out, a pulse for counters
     output logic                          aborted_o,  // a task is given up because of a hit
     output logic                          working_o   // a task is being read
 );
-  localparam int unsigned HALF = REFS / 2;
-  localparam int unsigned ADDRESS_W = $clog2(HALF);
-  localparam int unsigned WAY = 4;  // references a clock
+  localparam int unsigned BANKS = 4;
+  localparam int unsigned DEPTH = REFS / BANKS;
+  localparam int unsigned ADDRESS_W = $clog2(DEPTH);
+  localparam int unsigned WAY = 2 * BANKS;  // references a clock
   localparam int unsigned REF_BITS = gridrt_pkg::TRI_W + 10;
   localparam int unsigned LOW_BITS = 18;  // of these, in memories of their own
   localparam int unsigned CELLS_W = gridrt_pkg::CELLS_W;
@@ -44,8 +45,8 @@ module gridrt_fetch #(
   if (ROWS < 7 || (1 << INDEX_W) != ROWS) begin : gen_illegal
     $error("gridrt_fetch: ROWS must be a power of two, 8 at least");
   end
-  if (REFS < 4 || REFS % 2 != 0) begin : gen_illegal_memory
-    $error("gridrt_fetch: REFS must be even, 4 at least");
+  if (REFS < 8 || REFS % BANKS != 0) begin : gen_illegal_memory
+    $error("gridrt_fetch: REFS must be a multiple of 4, 8 at least");
   end
 
   // The task that is being read.
@@ -99,8 +100,9 @@ module gridrt_fetch #(
     end
   end
 
-  // 1, 2: the memory; 3: quarters, from the dominant axis on; 4: what passes. References with even and with odd indices lie in memories of
-  // their own, two ports each: rows are {odd second, odd first, even second, even first}.
+  // 1, 2: the memory; 3: quarters, from the dominant axis on; 4: what passes. Reference i lies in bank
+  // i % 4, which has two ports: a row is, bank by bank, the first one of the list that is there and the
+  // one four places behind.
   logic valid_1, valid_2, valid_3, valid_4;
   logic [WAY-1:0] wanted, wanted_1, wanted_2, wanted_3, pass, pass_4;
   logic end_1, end_2, end_3, end_4;
@@ -110,36 +112,26 @@ module gridrt_fetch #(
   logic [WAY-1:0][REF_BITS-1:0] found;
   logic [WAY-1:0][TRI_W-1:0] triangle_3, triangle_4;
   logic [WAY-1:0][2:0][3:0] masks, masks_3;  // dominant axis, b, c
-  logic [gridrt_pkg::REF_W-1:0] even_at, odd_at;
-  logic [ADDRESS_W-1:0] even_first, odd_first;
-  assign even_at = (at + 14'd1) >> 1;
-  assign odd_at = at >> 1;
-  assign even_first = ADDRESS_W'(even_at);
-  assign odd_first = ADDRESS_W'(odd_at);
 
-  // The list begins with an even or an odd index, and ends after `left`.
-  always_comb begin
-    wanted = {left > 10'd3, left > 10'd1, left > 10'd2, 1'b1};
-    if (at[0]) wanted = {left > 10'd2, 1'b1, left > 10'd3, left > 10'd1};
-    if (cancelled) wanted = '0;
-  end
-
-  for (genvar h = 0; h < 2; h++) begin : gen_half
+  for (genvar h = 0; h < BANKS; h++) begin : gen_bank
     logic write;
+    logic [1:0] offset;  // from the list's next reference to the first one in this bank
     logic [ADDRESS_W-1:0] first;
-    assign write = write_i && write_index_i[0] == (h == 1);
-    assign first = (h == 1) ? odd_first : even_first;
-    // 18 bits and 4: the shapes that leave nothing of a block memory unused.
+    assign write = write_i && write_index_i[1:0] == 2'(h);
+    assign offset = 2'(h) - at[1:0];
+    assign first = ADDRESS_W'((at + 14'(BANKS - 1 - h)) >> 2);
+    assign wanted[2*h] = !cancelled && left > 10'(offset);
+    assign wanted[2*h+1] = !cancelled && left > 10'({1'b1, offset});
+    // 18 bits and 4: the shapes that leave the least of a block memory unused.
     gridrt_ram_tdp #(
         .WIDTH(LOW_BITS),
-        .DEPTH(HALF),
-        .BANK((HALF > 2048) ? 2048 : HALF),
+        .DEPTH(DEPTH),
         .OUTPUT_REGISTER(1'b1)
     ) u_references (
         .clk_i,
         .a_write_i(write),
         .a_enable_i(go || write),
-        .a_address_i(write ? ADDRESS_W'(write_index_i >> 1) : first),
+        .a_address_i(write ? ADDRESS_W'(write_index_i >> 2) : first),
         .a_data_i(write_data_i[LOW_BITS-1:0]),
         .a_data_o(found[2*h][LOW_BITS-1:0]),
         .b_enable_i(go),
@@ -148,13 +140,13 @@ module gridrt_fetch #(
     );
     gridrt_ram_tdp #(
         .WIDTH(REF_BITS - LOW_BITS),
-        .DEPTH(HALF),
+        .DEPTH(DEPTH),
         .OUTPUT_REGISTER(1'b1)
     ) u_references_high (
         .clk_i,
         .a_write_i(write),
         .a_enable_i(go || write),
-        .a_address_i(write ? ADDRESS_W'(write_index_i >> 1) : first),
+        .a_address_i(write ? ADDRESS_W'(write_index_i >> 2) : first),
         .a_data_i(write_data_i[REF_BITS-1:LOW_BITS]),
         .a_data_o(found[2*h][REF_BITS-1:LOW_BITS]),
         .b_enable_i(go),
@@ -188,7 +180,7 @@ module gridrt_fetch #(
     masked_o = '0;
     for (int unsigned i = 0; i < WAY; i++) begin
       pass[i] = wanted_3[i] && (!MASK || match[i]);
-      if (valid_3 && wanted_3[i] && !pass[i]) masked_o = masked_o + 3'd1;
+      if (valid_3 && wanted_3[i] && !pass[i]) masked_o = masked_o + 4'd1;
     end
   end
 
@@ -310,7 +302,7 @@ module gridrt_fetch #(
   end
 
   logic unused;
-  assign unused = &{1'b0, even_at, odd_at, write_index_i};
+  assign unused = &{1'b0, write_index_i};
 
 `ifdef GRIDRT_ASSERT
   logic waited;

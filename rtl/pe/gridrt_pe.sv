@@ -38,7 +38,7 @@ module gridrt_pe #(
     output gridrt_pkg::slot_event_t       drop_o,             // a task has ended without an event
     output logic                          drop_cancelled_o,   // because of an earlier hit
     output logic                          test_o,             // counters: a test starts
-    output logic [2:0]                    masked_o,           // references left out
+    output logic [3:0]                    masked_o,           // references left out
     output logic                          busy_o,             // there is work
     output logic                          divider_wait_o,     // a hit waits for a divider
     output logic                          tap_test_valid_o,   // a test ends

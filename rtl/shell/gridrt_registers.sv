@@ -5,7 +5,7 @@ module gridrt_registers #(
     parameter int unsigned B = 17,
     parameter int unsigned PES = 4,
     parameter int unsigned BLOCKS = 4096,
-    parameter int unsigned CELLS = 8192,
+    parameter int unsigned CELLS = 6144,
     parameter int unsigned REFS = 8192,
     parameter int unsigned TRIS = 4096,
     parameter int unsigned VERTS = 2560,

@@ -11,31 +11,31 @@ module gridrt_totals (
   localparam int unsigned TOTALS = 14;
 
   logic [TOTALS-1:0][47:0] total;
-  logic [TOTALS-1:0][4:0] now;
+  logic [TOTALS-1:0][5:0] now;
   logic flying;
   assign flying = counts_i.in_flight;
   assign now = {
-    5'(counts_i.hit_wait && flying),
-    flying ? 5'(counts_i.divider_busy) : 5'd0,
-    flying ? 5'(counts_i.pe_idle) : 5'd0,
-    flying ? 5'(counts_i.queue_full) : 5'd0,
-    flying ? 5'(counts_i.traversal_idle) : 5'd0,
-    5'(counts_i.no_slot && flying),
-    5'(counts_i.no_ray && flying),
-    5'(counts_i.in_flight),
-    5'(counts_i.feedback_wait),
-    5'(counts_i.interrupts),
+    6'(counts_i.hit_wait && flying),
+    flying ? 6'(counts_i.divider_busy) : 6'd0,
+    flying ? 6'(counts_i.pe_idle) : 6'd0,
+    flying ? 6'(counts_i.queue_full) : 6'd0,
+    flying ? 6'(counts_i.traversal_idle) : 6'd0,
+    6'(counts_i.no_slot && flying),
+    6'(counts_i.no_ray && flying),
+    6'(counts_i.in_flight),
+    6'(counts_i.feedback_wait),
+    6'(counts_i.interrupts),
     counts_i.masked,
-    5'(counts_i.tests),
-    5'(counts_i.steps),
-    5'(counts_i.ray)
+    6'(counts_i.tests),
+    6'(counts_i.steps),
+    6'(counts_i.ray)
   };
 
   for (genvar i = 0; i < TOTALS; i++) begin : gen_total
     always_ff @(posedge clk_i or negedge rst_ni) begin
       if (!rst_ni) total[i] <= '0;
       else if (clear_i) total[i] <= '0;
-      else total[i] <= total[i] + {43'd0, now[i]};
+      else total[i] <= total[i] + {42'd0, now[i]};
     end
   end
   always_comb begin

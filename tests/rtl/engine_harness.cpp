@@ -21,7 +21,7 @@ std::uint64_t packed(std::span<const std::uint32_t, 3> p) {
 }
 
 /// Fields of counts_t from bit 0.
-void add(EngineCounts& sum, std::uint32_t counts) {
+void add(EngineCounts& sum, std::uint64_t counts) {
   const auto field = [&](int width) {
     const auto value = static_cast<long>(counts & ((1U << static_cast<unsigned>(width)) - 1U));
     counts >>= static_cast<unsigned>(width);
@@ -37,7 +37,7 @@ void add(EngineCounts& sum, std::uint32_t counts) {
   sum.in_flight += field(1);
   sum.feedback_waits += field(1);
   sum.interrupts += field(3);
-  sum.masked += field(5);
+  sum.masked += field(6);
   sum.tests += field(3);
   sum.steps += field(3);
   sum.rays += field(1);

@@ -3,7 +3,8 @@ add_executable(rtl_march march_test.cpp)
 target_link_libraries(rtl_march PRIVATE gridrt_image gridrt_flags GTest::gtest_main)
 gtest_discover_tests(rtl_march DISCOVERY_TIMEOUT 60 PROPERTIES LABELS rtl TIMEOUT 300)
 
-gridrt_rtl_bench(rtl_octants TOP gridrt_octants SOURCES octants_bench.cpp)
+gridrt_rtl_bench(rtl_ray_cells TOP gridrt_ray_cells SOURCES ray_cells_bench.cpp)
+gridrt_rtl_bench(rtl_quarters TOP gridrt_quarters SOURCES quarters_bench.cpp LINK gridrt_image)
 gridrt_rtl_bench(rtl_grid_config TOP gridrt_grid_config SOURCES grid_config_bench.cpp
                  LINK gridrt_grid)
 foreach(bits 12 14 17)

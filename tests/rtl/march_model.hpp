@@ -2,8 +2,8 @@
 // the RTL is compared with (setup_test, traverse_test) and that march_test compares with exact
 // truth.
 //
-// Positions on a lateral axis are in units of 2^-kFraction lattice steps; a half-voxel is
-// E = edge 2^(kFraction - 1) of them. Coordinates are mirrored so that every ray travels upwards.
+// Positions on a lateral axis are in units of 2^-kFraction lattice steps; a quarter of a voxel is
+// E = edge 2^(kFraction - 2) of them. Coordinates are mirrored so that every ray travels upwards.
 #pragma once
 
 #include <algorithm>
@@ -18,8 +18,8 @@
 
 namespace gridrt::march {
 
-inline constexpr int kFraction = 12;
-inline constexpr int kPartialBits = 3;  ///< of these in the first partial half-slab
+inline constexpr int kFraction = 13;
+inline constexpr int kPartialBits = 4;  ///< of these in the first partial quarter-slab
 
 /// What the hardware keeps of a grid.
 struct Grid {
@@ -39,11 +39,11 @@ inline Grid make_march_grid(const VoxelGrid& g) {
 }
 
 struct Lateral {
-  int h = 0;           ///< half-voxel at the block's entry, from the block's first one: -4 .. 3
-  int low = 0;         ///< no sample lies below this half (P0's one in the first block), 0 .. 3
+  int h = 0;           ///< quarter at the block's entry, from the block's first one: -8 .. 7
+  int low = 0;         ///< no sample lies below this quarter (P0's one in the first block), 0 .. 7
   std::int64_t r = 0;  ///< rest of the position, 0 .. E - 1
-  std::int64_t m = 0;  ///< increment per half-slab, 0 .. E
-  int lim = 0;         ///< half-voxel of P1, from the block's first one
+  std::int64_t m = 0;  ///< increment per quarter-slab, 0 .. E
+  int lim = 0;         ///< quarter of P1, from the block's first one
 
   bool operator==(const Lateral&) const = default;
 };
@@ -53,7 +53,7 @@ struct State {
   std::array<bool, 3> neg{};
   int block = 0;  ///< address of the block in which the ray enters this block-slab
   int slabs = 0;  ///< block-slabs after this one
-  int first = 0;  ///< first half-slab of this block that holds a part of the segment
+  int first = 0;  ///< first quarter-slab of this block that holds a part of the segment
   int last = 0;   ///< last one of the last block
   int enter = 0;  ///< entry face of this block-slab - P0
   std::array<Lateral, 2> lateral{};
@@ -80,44 +80,44 @@ inline State setup(const Grid& g, const glm::ivec3& p0, const glm::ivec3& p1) {
     if (std::int64_t{length[i]} * g.edge[a] > std::int64_t{length[a]} * g.edge[i]) a = i;
   }
   s.axis = a;
-  // Half-voxel of P0 on each axis (of the last one if P0 lies on the far face) and rest, half
-  // steps.
-  glm::ivec3 half{0};
+  // Quarter of P0 on each axis (the last one if P0 lies on the far face) and rest, quarter steps.
+  glm::ivec3 quarter{0};
   std::array<std::int64_t, 3> rest{};
   for (int i = 0; i < 3; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    half[i] = 2 * start[i] / g.edge[i];
-    rest[k] = std::int64_t{2 * start[i] % g.edge[i]} << (kFraction - 1);
-    if (half[i] == 4 * g.half_blocks[i]) {
-      half[i] -= 1;
-      rest[k] = (std::int64_t{g.edge[i]} << (kFraction - 1)) - 1;
+    quarter[i] = 4 * start[i] / g.edge[i];
+    rest[k] = std::int64_t{4 * start[i] % g.edge[i]} << (kFraction - 2);
+    if (quarter[i] == 8 * g.half_blocks[i]) {
+      quarter[i] -= 1;
+      rest[k] = (std::int64_t{g.edge[i]} << (kFraction - 2)) - 1;
     }
-    const int block = half[i] / 4;
+    const int block = quarter[i] / 8;
     s.block += g.stride[i] * (s.neg[k] ? g.half_blocks[i] - 1 - block : block);
   }
-  const int end_half = (2 * end[a] - 1) / g.edge[a];
-  s.slabs = end_half / 4 - half[a] / 4;
-  s.first = half[a] % 4;
-  s.last = end_half % 4;
-  s.enter = half[a] / 4 * 2 * g.edge[a] - start[a];
+  const int end_quarter = (4 * end[a] - 1) / g.edge[a];
+  s.slabs = end_quarter / 8 - quarter[a] / 8;
+  s.first = quarter[a] % 8;
+  s.last = end_quarter % 8;
+  s.enter = quarter[a] / 8 * 2 * g.edge[a] - start[a];
   for (int n = 0; n < 2; ++n) {
     const int i = (a + 1 + n) % 3;
     Lateral& l = s.lateral[static_cast<std::size_t>(n)];
-    const std::int64_t unit = std::int64_t{g.edge[i]} << (kFraction - 1);
+    const std::int64_t unit = std::int64_t{g.edge[i]} << (kFraction - 2);
     const std::int64_t slope = std::int64_t{length[i]};
-    l.m = ((slope * g.edge[a]) << (kFraction - 1)) / length[a];
-    // To the next half-face of the dominant axis, with fewer bits behind the point.
-    const std::int64_t ahead = std::int64_t{(half[a] + 1)} * g.edge[a] - 2 * std::int64_t{start[a]};
-    const std::int64_t partial = (((slope * ahead) << (kPartialBits - 1)) / length[a])
+    l.m = ((slope * g.edge[a]) << (kFraction - 2)) / length[a];
+    // To the next quarter-face of the dominant axis, with fewer bits behind the point.
+    const std::int64_t ahead =
+        std::int64_t{(quarter[a] + 1)} * g.edge[a] - 4 * std::int64_t{start[a]};
+    const std::int64_t partial = (((slope * ahead) << (kPartialBits - 2)) / length[a])
                                  << (kFraction - kPartialBits);
-    const std::int64_t here = (half[i] % 4) * unit + rest[static_cast<std::size_t>(i)];
+    const std::int64_t here = (quarter[i] % 8) * unit + rest[static_cast<std::size_t>(i)];
     // Back from there to the block's entry face.
-    const std::int64_t at = here + partial - (s.first + 1) * l.m + 4 * unit;
-    l.h = static_cast<int>(at / unit) - 4;
+    const std::int64_t at = here + partial - (s.first + 1) * l.m + 8 * unit;
+    l.h = static_cast<int>(at / unit) - 8;
     l.r = at % unit;
-    l.low = half[i] % 4;
-    const int end_lateral = std::min(2 * end[i] / g.edge[i], 4 * g.half_blocks[i] - 1);
-    l.lim = end_lateral - half[i] / 4 * 4;
+    l.low = quarter[i] % 8;
+    const int end_lateral = std::min(4 * end[i] / g.edge[i], 8 * g.half_blocks[i] - 1);
+    l.lim = end_lateral - quarter[i] / 8 * 8;
   }
   return s;
 }
@@ -139,11 +139,11 @@ struct Block {
 
 /// What a step finds: all voxels of the block that the ray meets, and those that are occupied.
 struct Step {
-  int block = 0;                      ///< address of the block looked at
-  unsigned met = 0;                   ///< bits x + 2 y + 4 z, not mirrored
-  unsigned cand = 0;                  ///< met and occupied
-  unsigned front = 0;                 ///< those in the slab entered first
-  std::array<unsigned, 8> octants{};  ///< bits x + 2 y + 4 z, not mirrored, of those met
+  int block = 0;                         ///< address of the block looked at
+  unsigned met = 0;                      ///< bits x + 2 y + 4 z, not mirrored
+  unsigned cand = 0;                     ///< met and occupied
+  unsigned front = 0;                    ///< those in the slab entered first
+  std::array<std::uint64_t, 8> cells{};  ///< bits x + 4 y + 16 z, not mirrored, of those met
   int base = 0;
   unsigned occ = 0;
   int near_enter = 0;
@@ -152,23 +152,25 @@ struct Step {
   bool done = false;  ///< the ray needs no further step
 };
 
-/// Halves met in interval i (bits) by the two samples around it.
-inline unsigned halves_of(const std::array<int, 5>& sample, int i, int block) {
+inline constexpr int kFaces = 9;  ///< of the quarter-slabs of a block
+
+/// Quarters met in interval i (bits) by the two samples around it.
+inline unsigned quarters_of(const std::array<int, kFaces>& sample, int i, int block) {
   unsigned bits = 0;
   for (int k = i; k <= i + 1; ++k) {
-    const int h = sample[static_cast<std::size_t>(k)];
-    if (h / 4 == block) bits |= 1U << (h % 4);
+    const int q = sample[static_cast<std::size_t>(k)];
+    if (q / 8 == block) bits |= 1U << (q % 8);
   }
   return bits;
 }
 
-/// The lateral half-voxels at the faces of the block's four half-slabs, clipped to the segment.
-inline std::array<int, 5> samples(const Lateral& l, std::int64_t unit) {
-  std::array<int, 5> r{};
-  for (int k = 0; k < 5; ++k) {
-    const std::int64_t at = (l.h + 4) * unit + l.r + k * l.m;
+/// The lateral quarters at the faces of the block's eight quarter-slabs, clipped to the segment.
+inline std::array<int, kFaces> samples(const Lateral& l, std::int64_t unit) {
+  std::array<int, kFaces> r{};
+  for (int k = 0; k < kFaces; ++k) {
+    const std::int64_t at = (l.h + 8) * unit + l.r + k * l.m;
     r[static_cast<std::size_t>(k)] =
-        std::min(std::max(static_cast<int>(at / unit) - 4, l.low), l.lim);
+        std::min(std::max(static_cast<int>(at / unit) - 8, l.low), l.lim);
   }
   return r;
 }
@@ -187,38 +189,38 @@ Step step(const Grid& g, State& s, std::int64_t limit, Memory&& memory) {
   out.block = s.block + cb * signed_stride(axes[0]) + cc * signed_stride(axes[1]);
   const Block record = memory(out.block);
   std::array<std::int64_t, 2> unit{};
-  std::array<std::array<int, 5>, 2> h{};
+  std::array<std::array<int, kFaces>, 2> h{};
   for (std::size_t n = 0; n < 2; ++n) {
-    unit[n] = std::int64_t{g.edge[axes[n]]} << (kFraction - 1);
+    unit[n] = std::int64_t{g.edge[axes[n]]} << (kFraction - 2);
     h[n] = samples(s.lateral[n], unit[n]);
   }
-  const int last = s.slabs == 0 ? s.last : 3;
+  const int last = s.slabs == 0 ? s.last : 7;
   // The part of the segment in this block, mirrored, and which neighbours it touches.
   unsigned touched = 0;
   for (int i = s.first; i <= last; ++i) {
     for (int sub = 0; sub < 4; ++sub) {
-      if (halves_of(h[0], i, sub & 1) != 0 && halves_of(h[1], i, sub >> 1) != 0)
+      if (quarters_of(h[0], i, sub & 1) != 0 && quarters_of(h[1], i, sub >> 1) != 0)
         touched |= 1U << sub;
     }
-    const unsigned b = halves_of(h[0], i, cb);
-    const unsigned c = halves_of(h[1], i, cc);
-    for (int hb = 0; hb < 4; ++hb) {
-      for (int hc = 0; hc < 4; ++hc) {
-        if (((b >> hb) & 1U) == 0 || ((c >> hc) & 1U) == 0) continue;
-        glm::ivec3 half{0};
-        half[a] = i;
-        half[axes[0]] = hb;
-        half[axes[1]] = hc;
-        unsigned octant = 0;
+    const unsigned b = quarters_of(h[0], i, cb);
+    const unsigned c = quarters_of(h[1], i, cc);
+    for (int qb = 0; qb < 8; ++qb) {
+      for (int qc = 0; qc < 8; ++qc) {
+        if (((b >> qb) & 1U) == 0 || ((c >> qc) & 1U) == 0) continue;
+        glm::ivec3 quarter{0};
+        quarter[a] = i;
+        quarter[axes[0]] = qb;
+        quarter[axes[1]] = qc;
+        unsigned cell = 0;
         unsigned bit = 0;
         for (int k = 0; k < 3; ++k) {
-          const int actual = s.neg[static_cast<std::size_t>(k)] ? 3 - half[k] : half[k];
-          octant |= static_cast<unsigned>(actual & 1) << k;
-          bit |= static_cast<unsigned>(actual >> 1) << k;
+          const int actual = s.neg[static_cast<std::size_t>(k)] ? 7 - quarter[k] : quarter[k];
+          cell |= static_cast<unsigned>(actual & 3) << (2 * k);
+          bit |= static_cast<unsigned>(actual >> 2) << k;
         }
         out.met |= 1U << bit;
-        out.octants[bit] |= 1U << octant;
-        if (i < 2) out.front |= 1U << bit;
+        out.cells[bit] |= std::uint64_t{1} << cell;
+        if (i < 4) out.front |= 1U << bit;
       }
     }
   }
@@ -257,13 +259,13 @@ Step step(const Grid& g, State& s, std::int64_t limit, Memory&& memory) {
   s.block += ahead * signed_stride(a);
   for (std::size_t n = 0; n < 2; ++n) {
     Lateral& l = s.lateral[n];
-    const std::int64_t at = (l.h + 4) * unit[n] + l.r + 4 * ahead * l.m;
-    const int h_at = static_cast<int>(at / unit[n]) - 4;
+    const std::int64_t at = (l.h + 8) * unit[n] + l.r + 8 * ahead * l.m;
+    const int h_at = static_cast<int>(at / unit[n]) - 8;
     l.r = at % unit[n];
-    l.h = h_at % 4;
+    l.h = h_at % 8;
     l.low = 0;
-    l.lim -= h_at / 4 * 4;
-    s.block += h_at / 4 * signed_stride(axes[n]);
+    l.lim -= h_at / 8 * 8;
+    s.block += h_at / 8 * signed_stride(axes[n]);
   }
   return out;
 }

@@ -56,14 +56,14 @@ void put_grid(Wide& wide, const Grid& g) {
 template <class Wide>
 void put_state(Wide& wide, const State& s) {
   Put<Wide> put(wide);
-  for (const Lateral& l : s.lateral) put(l.lim, 10);
+  for (const Lateral& l : s.lateral) put(l.lim, 11);
   for (const Lateral& l : s.lateral) put(l.m, 29);
   for (const Lateral& l : s.lateral) put(l.r, 28);
-  for (const Lateral& l : s.lateral) put(l.low, 2);
-  for (const Lateral& l : s.lateral) put(l.h, 3);
+  for (const Lateral& l : s.lateral) put(l.low, 3);
+  for (const Lateral& l : s.lateral) put(l.h, 4);
   put(s.enter, 19);
-  put(s.last, 2);
-  put(s.first, 2);
+  put(s.last, 3);
+  put(s.first, 3);
   put(s.slabs, 8);
   put(s.block, 12);
   for (const bool neg : s.neg) put(neg ? 1 : 0, 1);
@@ -74,14 +74,14 @@ template <class Wide>
 State get_state(const Wide& wide) {
   Get<Wide> get(wide);
   State s;
-  for (Lateral& l : s.lateral) l.lim = static_cast<int>(get(10));
+  for (Lateral& l : s.lateral) l.lim = static_cast<int>(get(11));
   for (Lateral& l : s.lateral) l.m = get(29);
   for (Lateral& l : s.lateral) l.r = get(28);
-  for (Lateral& l : s.lateral) l.low = static_cast<int>(get(2));
-  for (Lateral& l : s.lateral) l.h = static_cast<int>(get.with_sign(3));
+  for (Lateral& l : s.lateral) l.low = static_cast<int>(get(3));
+  for (Lateral& l : s.lateral) l.h = static_cast<int>(get.with_sign(4));
   s.enter = static_cast<int>(get.with_sign(19));
-  s.last = static_cast<int>(get(2));
-  s.first = static_cast<int>(get(2));
+  s.last = static_cast<int>(get(3));
+  s.first = static_cast<int>(get(3));
   s.slabs = static_cast<int>(get(8));
   s.block = static_cast<int>(get(12));
   for (bool& neg : s.neg) neg = get(1) != 0;

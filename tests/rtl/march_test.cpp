@@ -18,7 +18,7 @@ constexpr std::int64_t kNoLimit = std::int64_t{1} << 40;
 
 struct Visit {
   glm::ivec3 voxel{0};
-  unsigned octants = 0;
+  std::uint64_t cells = 0;  ///< bit x + 4 y + 16 z
   int enter = 0;
 };
 
@@ -44,7 +44,7 @@ std::vector<Visit> visits_of(const Grid& g, const Segment& segment) {
     for (int bit = 0; bit < 8; ++bit) {
       if (((step.cand >> bit) & 1U) == 0) continue;
       const bool front = ((step.front >> bit) & 1U) != 0;
-      visits.push_back({voxel_of(g, step.block, bit), step.octants[static_cast<std::size_t>(bit)],
+      visits.push_back({voxel_of(g, step.block, bit), step.cells[static_cast<std::size_t>(bit)],
                         front ? step.near_enter : step.far_enter});
     }
     done = step.done;
@@ -70,44 +70,46 @@ class Exact {
   std::int64_t length_;
 };
 
-/// Half-voxel `half` of the visit on an axis, in the scale of 2 exact.at().
-struct Half {
+/// A cell of the visit on an axis, in the scale of 4 exact.at().
+struct Quarter {
   std::int64_t lo = 0;
   std::int64_t hi = 0;
 };
-Half half_of(const Grid& g, const Visit& v, const Exact& exact, int a, unsigned octant) {
-  const int half = static_cast<int>((octant >> a) & 1U);
-  const std::int64_t lo = std::int64_t{2 * v.voxel[a] + half} * g.edge[a] * exact.scale();
+Quarter quarter_of(const Grid& g, const Visit& v, const Exact& exact, int a, unsigned cell) {
+  const int quarter = static_cast<int>((cell >> (2 * a)) & 3U);
+  const std::int64_t lo = std::int64_t{4 * v.voxel[a] + quarter} * g.edge[a] * exact.scale();
   return {lo, lo + g.edge[a] * exact.scale()};
 }
 
-/// True if some octant of the visit, grown by one lattice step sideways, holds the point.
+/// True if some cell of the visit, grown by one lattice step sideways, holds the point.
 bool holds(const Grid& g, const Visit& v, const Exact& exact, int axis, std::int64_t n) {
-  for (unsigned octant = 0; octant < 8; ++octant) {
-    bool here = ((v.octants >> octant) & 1U) != 0;
-    for (int a = 0; a < 3; ++a) {
-      const std::int64_t margin = a == axis ? 0 : 2 * exact.scale();
-      const Half half = half_of(g, v, exact, a, octant);
-      const std::int64_t x = 2 * exact.at(a, n);
-      here = here && x >= half.lo - margin && x <= half.hi + margin;
+  for (unsigned cell = 0; cell < 64; ++cell) {
+    bool here = ((v.cells >> cell) & 1U) != 0;
+    for (int a = 0; a < 3 && here; ++a) {
+      const std::int64_t margin = a == axis ? 0 : 4 * exact.scale();
+      const Quarter quarter = quarter_of(g, v, exact, a, cell);
+      const std::int64_t x = 4 * exact.at(a, n);
+      here = x >= quarter.lo - margin && x <= quarter.hi + margin;
     }
     if (here) return true;
   }
   return false;
 }
 
-/// True if on each axis every octant of the visit, grown by a 64th of a voxel or one step, is met
-/// by the part of the segment that lies in the octant's half-slab.
+/// True if on each axis every cell of the visit, grown by a 128th of a voxel or one step, is met by
+/// the part of the segment that lies in the cell's quarter-slab.
 bool tight(const Grid& g, const Visit& v, const Segment& s, const Exact& exact, int axis) {
   const bool up = s.p1[axis] > s.p0[axis];
-  for (unsigned octant = 0; octant < 8; ++octant) {
-    if (((v.octants >> octant) & 1U) == 0) continue;
-    const int half_slab = 2 * v.voxel[axis] + static_cast<int>((octant >> axis) & 1U);
-    const std::int64_t low = std::int64_t{half_slab} * g.edge[axis];
+  for (unsigned cell = 0; cell < 64; ++cell) {
+    if (((v.cells >> cell) & 1U) == 0) continue;
+    // In quarter steps times two, as exact.at() takes half of it.
+    const int slab = 4 * v.voxel[axis] + static_cast<int>((cell >> (2 * axis)) & 3U);
+    const std::int64_t low = std::int64_t{slab} * g.edge[axis];
     const std::int64_t high = low + g.edge[axis];
-    const std::int64_t p = 2 * std::int64_t{s.p0[axis]};
-    const std::int64_t from = std::max<std::int64_t>(up ? low - p : p - high, 0);
-    const std::int64_t to = std::min(up ? high - p : p - low, 2 * exact.length());
+    const std::int64_t p = 4 * std::int64_t{s.p0[axis]};
+    // Twice the distance, rounded outwards to the scale of exact.at().
+    const std::int64_t from = std::max<std::int64_t>((up ? low - p : p - high) >> 1, 0);
+    const std::int64_t to = std::min(((up ? high - p : p - low) + 1) >> 1, 2 * exact.length());
     if (from > to) return false;
     for (int a = 0; a < 3; ++a) {
       if (a == axis) continue;
@@ -115,12 +117,12 @@ bool tight(const Grid& g, const Visit& v, const Segment& s, const Exact& exact, 
       const std::int64_t x1 = exact.at(a, to);
       const std::int64_t grow =
           std::max(128 * exact.scale(), 2 * g.edge[a] * exact.scale());  // 1/128
-      const Half half = half_of(g, v, exact, a, octant);
-      if (128 * std::max(x0, x1) < 64 * half.lo - grow) return false;
-      if (128 * std::min(x0, x1) > 64 * half.hi + grow) return false;
+      const Quarter quarter = quarter_of(g, v, exact, a, cell);
+      if (128 * std::max(x0, x1) < 32 * quarter.lo - grow) return false;
+      if (128 * std::min(x0, x1) > 32 * quarter.hi + grow) return false;
     }
   }
-  return v.octants != 0;
+  return v.cells != 0;
 }
 
 void check(const Case& c, const Segment& s, Random& random) {
@@ -181,7 +183,7 @@ TEST_P(March, EveryPointOfTheSegmentIsVisitedAndLittleElse) {
 
 INSTANTIATE_TEST_SUITE_P(Bits, March, testing::Values(12, 14, 17));
 
-using Found = std::multimap<std::tuple<int, int>, std::tuple<unsigned, int>>;
+using Found = std::multimap<std::tuple<int, int>, std::tuple<std::uint64_t, int>>;
 
 /// Blocks with random voxels and the skip field that belongs to them.
 std::vector<Block> random_blocks(Random& random, const Grid& g, double density) {
@@ -201,7 +203,7 @@ std::vector<Block> random_blocks(Random& random, const Grid& g, double density) 
   return blocks;
 }
 
-/// Voxels dispatched, with their octants and entries; `plain`: without jumps.
+/// Voxels dispatched, with their cells and entries; `plain`: without jumps.
 Found dispatched(const Grid& g, const Segment& s, const std::vector<Block>& blocks, bool plain,
                  int& steps) {
   Found found;
@@ -215,9 +217,9 @@ Found dispatched(const Grid& g, const Segment& s, const std::vector<Block>& bloc
     for (int bit = 0; bit < 8; ++bit) {
       if (((step.cand >> bit) & 1U) == 0) continue;
       const bool front = ((step.front >> bit) & 1U) != 0;
-      found.insert({{step.block, bit},
-                    {step.octants[static_cast<std::size_t>(bit)],
-                     front ? step.near_enter : step.far_enter}});
+      found.insert(
+          {{step.block, bit},
+           {step.cells[static_cast<std::size_t>(bit)], front ? step.near_enter : step.far_enter}});
     }
     done = step.done;
   }

@@ -13,13 +13,13 @@ gridrt_rtl_bench(rtl_resolve_12 TOP gridrt_resolve PARAMETERS B=12 TRIS=16 SLOTS
                  SOURCES resolve_bench.cpp)
 
 # The whole of it: as on the board, small, without cancelling, and with pauses inside.
-set(board B=17 SLOTS=48 QUEUE=16 REFS=10240 TRIS=4096 VERTS=2560 DIVIDERS=3 NUMBER=0)
+set(board B=17 SLOTS=48 QUEUE=16 REFS=8192 TRIS=4096 VERTS=2560 DIVIDERS=3 NUMBER=0)
 set(small B=12 SLOTS=6 QUEUE=3 REFS=300 TRIS=100 VERTS=64 DIVIDERS=1 NUMBER=2)
-gridrt_rtl_bench(rtl_pe_17 TOP gridrt_pe PARAMETERS ${board} SOURCES pe_bench.cpp LINK gridrt_hal)
-gridrt_rtl_bench(rtl_pe_12 TOP gridrt_pe PARAMETERS ${small} SOURCES pe_bench.cpp LINK gridrt_hal)
+gridrt_rtl_bench(rtl_pe_17 TOP gridrt_pe PARAMETERS ${board} SOURCES pe_bench.cpp LINK gridrt_hal gridrt_image)
+gridrt_rtl_bench(rtl_pe_12 TOP gridrt_pe PARAMETERS ${small} SOURCES pe_bench.cpp LINK gridrt_hal gridrt_image)
 gridrt_rtl_bench(rtl_pe_stalls TOP gridrt_pe PARAMETERS ${board} DEFINES GRIDRT_STALL
-                 SOURCES pe_bench.cpp LINK gridrt_hal)
+                 SOURCES pe_bench.cpp LINK gridrt_hal gridrt_image)
 target_compile_definitions(rtl_pe_stalls PRIVATE GRIDRT_STALL)
 gridrt_rtl_bench(rtl_pe_no_cancel TOP gridrt_pe PARAMETERS ${small} "CANCEL=1'b0"
-                 SOURCES pe_bench.cpp LINK gridrt_hal)
+                 SOURCES pe_bench.cpp LINK gridrt_hal gridrt_image)
 target_compile_definitions(rtl_pe_no_cancel PRIVATE GRIDRT_BENCH_NO_CANCEL)

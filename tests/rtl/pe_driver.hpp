@@ -84,7 +84,7 @@ class PeDriver : public testing::Test {
     }
     for (std::size_t i = 0; i < image_->references.size(); ++i) {
       const Reference& r = image_->references[i];
-      write(3, i, r.triangle | (r.octants << 12U));
+      write(3, i, r.triangle | (r.quarters << 12U));
     }
     for (int i = 0; i < 3; ++i) pe_->load_i[static_cast<std::size_t>(i)] = 0;
     pe_.settle();
@@ -191,9 +191,11 @@ class PeDriver : public testing::Test {
     t.count = 1 + static_cast<int>(random_() % static_cast<unsigned>(traffic.list));
     t.first =
         static_cast<int>(random_() % static_cast<unsigned>(kPeSizes.references - t.count + 1));
-    t.octants = 255;
-    if (!percent(traffic.whole))
-      t.octants = 1U << random_() % 8 | (random_() & random_() & random_() & 255U);
+    t.cells = 0xFFFFFFFF;
+    if (!percent(traffic.whole)) {
+      t.cells = std::uint64_t{random_() % 3} << 32U | 1U << random_() % 16 |
+                1U << (16 + random_() % 16) | (random_() & random_() & random_());
+    }
     const unsigned most = traffic.near > 0 ? static_cast<unsigned>(traffic.near) : length;
     t.enter = random_() % (most + 1);
     return t;

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "gridrt_protocol.hpp"
+#include "host/image/quarter_code.hpp"
 #include "tests/rtl/exact_test.hpp"
 #include "tests/rtl/pe_ports.hpp"
 
@@ -24,7 +24,7 @@ class Random {
 
 struct Reference {
   std::uint32_t triangle = 0;
-  unsigned octants = 63;  ///< code, as in protocol.toml
+  unsigned quarters = 255;  ///< code, as in protocol.toml; 255: all
 };
 
 struct StoredTriangle {
@@ -47,7 +47,7 @@ struct PeSizes {
 };
 
 /// Random memories of a PE; `size` is the edge of the cube in which everything lies: the smaller,
-/// the more degenerate tests. `sparse` is how many references of ten touch some octants only.
+/// the more degenerate tests. `sparse` is how many references of ten touch some quarters only.
 class PeImage {
  public:
   PeImage(int bits, const PeSizes& sizes, std::int64_t size, unsigned sparse, Random& random)
@@ -62,9 +62,8 @@ class PeImage {
       triangles.push_back(t);
     }
     for (int i = 0; i < sizes.references; ++i) {
-      const unsigned octants =
-          random() % 10 < sparse ? random() % (random() % 2 == 0 ? 8U : 64U) : 63U;
-      references.push_back({random() % static_cast<unsigned>(sizes.triangles), octants});
+      const unsigned quarters = random() % 10 < sparse ? random() % 1024 : 255U;
+      references.push_back({random() % static_cast<unsigned>(sizes.triangles), quarters});
     }
   }
 
@@ -104,6 +103,20 @@ class PeImage {
   std::array<std::int64_t, 3> low_{};
 };
 
+/// Whether a reference's code and the cells of a ray (task_t) have a cell in common.
+inline bool shares_a_cell(unsigned code, std::uint64_t cells) {
+  const QuarterMasks quarters = quarters_of_code(code);
+  const auto axis = static_cast<unsigned>(cells >> 32U);
+  const auto mask = [&](unsigned a) { return (quarters >> (4 * (a % 3))) & 15U; };
+  for (unsigned slab = 0; slab < 4; ++slab) {
+    const auto b = static_cast<unsigned>(cells >> (16 + 4 * slab)) & 15U;
+    const auto c = static_cast<unsigned>(cells >> (4 * slab)) & 15U;
+    const bool here = ((mask(axis) >> slab) & 1U) != 0;
+    if (here && (mask(axis + 1) & b) != 0 && (mask(axis + 2) & c) != 0) return true;
+  }
+  return false;
+}
+
 /// The tests of a task, in order: the triangle, what the test says, and the event of a hit that
 /// counts (no hit: nothing found, or the triangle that the ray ignores).
 struct PeTest {
@@ -112,13 +125,15 @@ struct PeTest {
   Event event;
 };
 
-/// The order in which a list is read: four references a clock, those with even indices first.
+/// The order in which a list is read: eight references a clock, by the banks of the memory.
 inline std::vector<int> order_of(const Task& task) {
   std::vector<int> order;
-  const bool odd = task.first % 2 != 0;
-  for (int row = 0; row < task.count; row += 4) {
-    for (const int i : odd ? std::array{1, 3, 0, 2} : std::array{0, 2, 1, 3}) {
-      if (row + i < task.count) order.push_back(row + i);
+  for (int row = 0; row < task.count; row += 8) {
+    for (int bank = 0; bank < 4; ++bank) {
+      const int first = row + (bank - task.first % 4 + 4) % 4;
+      for (const int i : {first, first + 4}) {
+        if (i < task.count) order.push_back(i);
+      }
     }
   }
   return order;
@@ -129,7 +144,7 @@ inline std::vector<PeTest> tests_of(const PeImage& image, const PeRay& ray, cons
   for (const int i : order_of(task)) {
     const Reference& r =
         image.references[static_cast<std::size_t>(task.first) + static_cast<std::size_t>(i)];
-    if ((protocol::kOctantSets[r.octants] & task.octants) == 0) continue;
+    if (!shares_a_cell(r.quarters, task.cells)) continue;
     const Verdict verdict = judge(ray.p0, ray.p1, image.corners(r.triangle));
     PeTest test{r.triangle, verdict.hit, {}};
     const std::uint32_t id = image.triangles[r.triangle].id;

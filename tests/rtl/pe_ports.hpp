@@ -47,17 +47,17 @@ struct Task {
   int slot = 0;
   int first = 0;
   int count = 1;
-  unsigned octants = 255;
+  std::uint64_t cells = 0xFFFFFFFF;  ///< of dominant axis x: all
   std::uint32_t enter = 0;
 };
 
 template <class Port>
 void put_task(Port& port, const Task& t) {
   put_bits(port, 0, 18, t.enter);
-  put_bits(port, 18, 8, t.octants);
-  put_bits(port, 26, 10, static_cast<std::uint64_t>(t.count));
-  put_bits(port, 36, 14, static_cast<std::uint64_t>(t.first));
-  put_bits(port, 50, 6, static_cast<std::uint64_t>(t.slot));
+  put_bits(port, 18, 34, t.cells);
+  put_bits(port, 52, 10, static_cast<std::uint64_t>(t.count));
+  put_bits(port, 62, 14, static_cast<std::uint64_t>(t.first));
+  put_bits(port, 76, 6, static_cast<std::uint64_t>(t.slot));
 }
 
 /// interrupt_t

@@ -60,7 +60,7 @@ class ShellBench {
   std::vector<protocol::RayCompact> rays;
   int configs = 0;
   /// What the engine counts in this clock: gridrt_pkg::counts_t, and words of its tap.
-  std::uint32_t counts = 0;
+  std::uint64_t counts = 0;
   std::array<std::uint32_t, 8> tap{};
 
   void tick();

@@ -220,8 +220,8 @@ TEST(ShellLoad, SectionsThatDoNotFitTheirHeaderAreRefused) {
   };
   // One record more than the memory holds; not whole records; too few.
   EXPECT_REFUSED(resized(SectionKind::kBlocks, 0, 5 * 4096 + 5), kTooLarge, 1);
-  EXPECT_REFUSED(resized(SectionKind::kCells, 0, 4 * 8192 + 4), kTooLarge, 2);
-  EXPECT_REFUSED(resized(SectionKind::kReferences, 1, 3 * 10240 + 3), kTooLarge, 0x103);
+  EXPECT_REFUSED(resized(SectionKind::kCells, 0, 4 * 6144 + 4), kTooLarge, 2);
+  EXPECT_REFUSED(resized(SectionKind::kReferences, 1, 3 * 8192 + 3), kTooLarge, 0x103);
   EXPECT_REFUSED(resized(SectionKind::kTriangles, 2, 7 * 4096 + 7), kTooLarge, 0x204);
   EXPECT_REFUSED(resized(SectionKind::kVertices, 3, 7 * 2560 + 7), kTooLarge, 0x305);
   EXPECT_REFUSED(resized(SectionKind::kVertices, 3, 7 * 2560 - 1), kBadSection, 0x305);

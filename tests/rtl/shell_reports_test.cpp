@@ -47,19 +47,23 @@ TEST(ShellReports, SayWhoAndWhatTheDeviceIs) {
 TEST(ShellReports, CountersAreSums) {
   ShellBench bench;
   std::mt19937 source(3);
-  const auto random = [&] { return static_cast<std::uint32_t>(source()); };
+  const auto random = [&] {
+    return (std::uint64_t{source()} << 32U | source()) & ((std::uint64_t{1} << 33U) - 1);
+  };
   protocol::CountersReport counters;
   protocol::StallsReport stalls;
   for (int i = 0; i < 5000; ++i) {
-    const std::uint32_t c = random();
+    const std::uint64_t c = random();
     bench.counts = c;
     bench.tick();
-    const auto field = [&](unsigned at, unsigned width) { return c >> at & ((1U << width) - 1U); };
+    const auto field = [&](unsigned at, unsigned width) {
+      return static_cast<std::uint32_t>(c >> at) & ((1U << width) - 1U);
+    };
     const bool flying = field(15, 1) != 0;
-    counters.rays += field(31, 1);
-    counters.steps += field(28, 3);
-    counters.tests += field(25, 3);
-    counters.masked += field(20, 5);
+    counters.rays += field(32, 1);
+    counters.steps += field(29, 3);
+    counters.tests += field(26, 3);
+    counters.masked += field(20, 6);
     counters.interrupts += field(17, 3);
     counters.feedback_waits += field(16, 1);
     counters.cycles += flying ? 1 : 0;
@@ -84,7 +88,9 @@ TEST(ShellReports, CountersAreSums) {
 TEST(ShellReports, ResetDropsWhatIsUnderWay) {
   const Image image = small_image(12, GRIDRT_RTL_PES);
   std::mt19937 source(4);
-  const auto random = [&] { return static_cast<std::uint32_t>(source()); };
+  const auto random = [&] {
+    return (std::uint64_t{source()} << 32U | source()) & ((std::uint64_t{1} << 33U) - 1);
+  };
   ShellBench bench;
   const auto rays = rays_in(image, 60, 2);
   std::uint32_t sequence = 1;
