@@ -156,19 +156,12 @@ module gridrt_fetch #(
   end
 
   logic [WAY-1:0] match;
+  logic [WAY-1:0][2:0][3:0] touched;  // z, y, x
   for (genvar i = 0; i < WAY; i++) begin : gen_match
-    logic [2:0][3:0] turned;  // z, y, x
     gridrt_quarters u_quarters (
         .code_i(found[i][TRI_W+:10]),
-        .masks_o(turned)
+        .masks_o(touched[i])
     );
-    always_comb begin
-      case (cells_2[CELLS_W-1-:2])
-        2'd0: masks[i] = turned;
-        2'd1: masks[i] = {turned[0], turned[2], turned[1]};
-        default: masks[i] = {turned[1], turned[0], turned[2]};
-      endcase
-    end
     gridrt_match u_match (
         .masks_i(masks_3[i]),
         .cells_i(cells_3),
@@ -176,6 +169,15 @@ module gridrt_fetch #(
     );
   end
 
+  always_comb begin
+    for (int unsigned i = 0; i < WAY; i++) begin
+      case (cells_2[CELLS_W-1-:2])
+        2'd0: masks[i] = touched[i];
+        2'd1: masks[i] = {touched[i][0], touched[i][2], touched[i][1]};
+        default: masks[i] = {touched[i][1], touched[i][0], touched[i][2]};
+      endcase
+    end
+  end
   always_comb begin
     masked_o = '0;
     for (int unsigned i = 0; i < WAY; i++) begin
