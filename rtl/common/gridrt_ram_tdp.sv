@@ -32,6 +32,11 @@ module gridrt_ram_tdp #(
   logic [BANKS-1:0][WIDTH-1:0] a_bank, b_bank;
   logic [WIDTH-1:0] a_now, b_now;
 
+  // With an output register the enables, which often come late, are needed there only.
+  logic a_read, b_read;
+  assign a_read = OUTPUT_REGISTER || a_enable_i;
+  assign b_read = OUTPUT_REGISTER || b_enable_i;
+
   for (genvar i = 0; i < BANKS; i++) begin : gen_bank
     localparam int unsigned WORDS = (i == BANKS - 1) ? DEPTH - i * BANK : BANK;
     localparam int unsigned LOW_W = (WORDS > 1) ? $clog2(WORDS) : 1;
@@ -51,12 +56,12 @@ module gridrt_ram_tdp #(
     end
     always_ff @(posedge clk_i) begin
       if (a_enable_i && a_write_i && a_here) memory[a_low] <= a_data_i;
-      if (a_enable_i && !a_here) a_bank[i] <= '0;
-      else if (a_enable_i && !a_write_i) a_bank[i] <= memory[a_low];
+      if (a_read && !a_here) a_bank[i] <= '0;
+      else if (a_read && !a_write_i) a_bank[i] <= memory[a_low];
     end
     always_ff @(posedge clk_i) begin
-      if (b_enable_i && !b_here) b_bank[i] <= '0;
-      else if (b_enable_i) b_bank[i] <= memory[b_low];
+      if (b_read && !b_here) b_bank[i] <= '0;
+      else if (b_read) b_bank[i] <= memory[b_low];
     end
   end
 

@@ -52,16 +52,20 @@ module gridrt_engine #(
   localparam int unsigned TASK_W = gridrt_pkg::TASK_W;
   localparam int unsigned EVENT_W = gridrt_pkg::EVENT_W;
   localparam int unsigned ENTRY_W = $clog2(ROB);
+  localparam int unsigned START_W = gridrt_state_pkg::START_W;
 
   // Setup.
+  gridrt_pkg::load_t load;
+  gridrt_pkg::slot_event_t alloc, alloc_q;
+  gridrt_pkg::interrupt_t interrupt, interrupt_q;
   gridrt_state_pkg::grid_t grid;
-  gridrt_state_pkg::start_t start;
+  gridrt_state_pkg::start_t set_start, start;
   logic ray_valid, ray_ready, set_valid, set_ready, set_miss, set_any;
-  logic taken_valid, taken_ready;
-  logic [2:0][B-1:0] set_p0;
-  logic [2:0][B:0] set_d;
-  logic [B-1:0] set_length;
-  logic [ID_W-1:0] set_ignore;
+  logic one_valid, one_ready, taken_valid, taken_ready, start_miss, start_any;
+  logic [2:0][B-1:0] set_p0, start_p0;
+  logic [2:0][B:0] set_d, start_d;
+  logic [B-1:0] set_length, start_length;
+  logic [ID_W-1:0] set_ignore, start_ignore;
 
   gridrt_grid_config u_config (
       .clk_i,
@@ -98,7 +102,7 @@ module gridrt_engine #(
       .any_hit_i(ray_any_i),
       .out_valid_o(set_valid),
       .out_ready_i(set_ready),
-      .start_o(start),
+      .start_o(set_start),
       .p0_o(set_p0),
       .d_o(set_d),
       .length_o(set_length),
@@ -114,14 +118,37 @@ module gridrt_engine #(
       .rst_ni,
       .in_valid_i (set_valid),
       .in_ready_o (set_ready),
-      .out_valid_o(taken_valid),
-      .out_ready_i(taken_ready),
+      .out_valid_o(one_valid),
+      .out_ready_i(one_ready),
       .data_i({set_p0, set_d, set_ignore, set_any, set_miss})
   );
 
+  // The ray that gets a slot next. PEs and units learn a clock late of slots and limits.
+  gridrt_hold #(
+      .WIDTH(START_W + 7 * B + ID_W + 5)
+  ) u_start (
+      .clk_i,
+      .rst_ni,
+      .in_valid_i (one_valid),
+      .in_ready_o (one_ready),
+      .in_data_i  ({set_start, set_p0, set_d, set_length, set_ignore, set_any, set_miss}),
+      .out_valid_o(taken_valid),
+      .out_ready_i(taken_ready),
+      .out_data_o ({start, start_p0, start_d, start_length, start_ignore, start_any, start_miss})
+  );
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      load <= '0;
+      alloc_q <= '0;
+      interrupt_q <= '0;
+    end else begin
+      load <= load_i;
+      alloc_q <= alloc;
+      interrupt_q <= interrupt;
+    end
+  end
+
   // Answers.
-  gridrt_pkg::slot_event_t alloc;
-  gridrt_pkg::interrupt_t interrupt;
   gridrt_pkg::event_t best;
   logic [TUS-1:0] start_valid, start_ready, inc_valid, done_valid, step;
   logic [TUS-1:0][SLOT_W-1:0] inc_slot, done_slot;
@@ -148,7 +175,7 @@ module gridrt_engine #(
       .rst_ni,
       .ray_valid_i(taken_valid),
       .ray_ready_o(taken_ready),
-      .ray_miss_i(set_miss),
+      .ray_miss_i(start_miss),
       .alloc_o(alloc),
       .start_o(start_valid),
       .start_ready_i(start_ready),
@@ -227,12 +254,13 @@ module gridrt_engine #(
   ) u_walk (
       .clk_i,
       .rst_ni,
-      .load_i,
+      .load_i(load),
       .grid_i(grid),
-      .alloc_i(alloc),
-      .interrupt_i(interrupt),
+      .alloc_i(alloc_q),
+      .interrupt_i(interrupt_q),
       .start_valid_i(start_valid),
       .start_ready_o(start_ready),
+      .start_slot_i(alloc.slot),
       .start_i(start),
       .few_i(few),
       .none_i(none),
@@ -271,71 +299,44 @@ module gridrt_engine #(
   logic [PES-1:0] drop_cancelled, test, busy, divider_wait, tested, test_hit;
   logic [PES-1:0][3:0] masked;
   logic [PES-1:0][TRI_W-1:0] tested_triangle;
-  for (genvar p = 0; p < PES; p++) begin : gen_pe
-    logic one_valid, one_ready, event_from, event_taken;
-    gridrt_stall #(
-        .SEED(21 + p),
-        .WIDTH(TASK_W)
-    ) u_task_stall (
-        .clk_i,
-        .rst_ni,
-        .in_valid_i (task_valid[p]),
-        .in_ready_o (task_ready[p]),
-        .out_valid_o(one_valid),
-        .out_ready_i(one_ready),
-        .data_i(tasks[p])
-    );
-    gridrt_pe #(
-        .B(B),
-        .SLOTS(SLOTS),
-        .QUEUE(QUEUE),
-        .REFS(REFS),
-        .TRIS(TRIS),
-        .VERTS(VERTS),
-        .MASK(MASK),
-        .CANCEL(CANCEL),
-        .DIVIDERS(DIVIDERS),
-        .NUMBER(p)
-    ) u_pe (
-        .clk_i,
-        .rst_ni,
-        .load_i,
-        .alloc_i(alloc),
-        .ray_p0_i(set_p0),
-        .ray_d_i(set_d),
-        .ray_length_i(set_length),
-        .ray_ignore_i(set_ignore),
-        .ray_any_i(set_any),
-        .task_valid_i(one_valid),
-        .task_ready_o(one_ready),
-        .task_i(tasks[p]),
-        .interrupt_i(interrupt),
-        .event_valid_o(event_from),
-        .event_ready_i(event_taken),
-        .event_o(found[p]),
-        .drop_o(pe_drop[p]),
-        .drop_cancelled_o(drop_cancelled[p]),
-        .test_o(test[p]),
-        .masked_o(masked[p]),
-        .busy_o(busy[p]),
-        .divider_wait_o(divider_wait[p]),
-        .tap_test_valid_o(tested[p]),
-        .tap_test_triangle_o(tested_triangle[p]),
-        .tap_test_hit_o(test_hit[p])
-    );
-    gridrt_stall #(
-        .SEED(31 + p),
-        .WIDTH(EVENT_W)
-    ) u_event_stall (
-        .clk_i,
-        .rst_ni,
-        .in_valid_i (event_from),
-        .in_ready_o (event_taken),
-        .out_valid_o(event_valid[p]),
-        .out_ready_i(event_ready[p]),
-        .data_i(found[p])
-    );
-  end
+  gridrt_pes #(
+      .B(B),
+      .PES(PES),
+      .SLOTS(SLOTS),
+      .QUEUE(QUEUE),
+      .REFS(REFS),
+      .TRIS(TRIS),
+      .VERTS(VERTS),
+      .MASK(MASK),
+      .CANCEL(CANCEL),
+      .DIVIDERS(DIVIDERS)
+  ) u_pes (
+      .clk_i,
+      .rst_ni,
+      .load_i(load),
+      .alloc_i(alloc_q),
+      .ray_p0_i(start_p0),
+      .ray_d_i(start_d),
+      .ray_length_i(start_length),
+      .ray_ignore_i(start_ignore),
+      .ray_any_i(start_any),
+      .interrupt_i(interrupt_q),
+      .task_valid_i(task_valid),
+      .task_ready_o(task_ready),
+      .task_i(tasks),
+      .event_valid_o(event_valid),
+      .event_ready_i(event_ready),
+      .event_o(found),
+      .drop_o(pe_drop),
+      .drop_cancelled_o(drop_cancelled),
+      .test_o(test),
+      .masked_o(masked),
+      .busy_o(busy),
+      .divider_wait_o(divider_wait),
+      .tap_test_valid_o(tested),
+      .tap_test_triangle_o(tested_triangle),
+      .tap_test_hit_o(test_hit)
+  );
 
   // What is counted, and told.
   logic [EXPS-1:0] dropped;

@@ -22,6 +22,7 @@ module gridrt_walk #(
     // A ray starts in the unit of its slot.
     input  logic                    [  TUS-1:0]                  start_valid_i,
     output logic                    [  TUS-1:0]                  start_ready_o,
+    input  logic                    [SLOT_W-1:0]                 start_slot_i,
     input  gridrt_state_pkg::start_t                             start_i,
     // By slot: fewer than the tasks wanted ahead are pending; none is.
     input  logic                    [SLOTS-1:0]                  few_i,
@@ -82,8 +83,6 @@ module gridrt_walk #(
       assign none[s] = none_i[s*TUS+t];
     end
 
-    logic [SLOT_W-1:0] alloc_slot;
-    assign alloc_slot = alloc_i.slot;
     gridrt_traverse #(
         .B(B),
         .SLOTS(SLOTS),
@@ -96,7 +95,7 @@ module gridrt_walk #(
         .grid_i,
         .start_valid_i(start_valid_i[t]),
         .start_ready_o(start_ready_o[t]),
-        .start_slot_i(alloc_slot),
+        .start_slot_i,
         .start_i,
         .few_i(few),
         .idle_i(none),

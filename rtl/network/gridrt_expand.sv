@@ -26,7 +26,7 @@ module gridrt_expand #(
     input  logic                                      task_ready_i,
     output gridrt_pkg::task_t                         task_o,
     output logic                    [PE_W-1:0]        task_pe_o,
-    output gridrt_pkg::slot_event_t                   drop_o  // a voxel that an earlier hit cancels
+    output gridrt_pkg::slot_event_t                   drop_o  // a voxel that an earlier hit has cancelled
 );
   localparam int unsigned TASK_W = gridrt_pkg::TASK_W;
   localparam int unsigned CELLS_W = gridrt_pkg::CELLS_W;
@@ -54,7 +54,7 @@ module gridrt_expand #(
     end
   end
   assign go = now_valid && used != USED_W'(DEPTH);
-  assign final_voxel = (left & ~voxel) == '0;
+  assign final_voxel = (left & (left - 8'd1)) == '0;
   assign bundle_ready_o = !now_valid || (go && final_voxel);
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
@@ -73,7 +73,8 @@ module gridrt_expand #(
     end
   end
 
-  // Asking: the limit decides whether the cell is read; where the ray is within the voxel.
+  // Asking: the cell is read; the limit decides a clock later whether for nothing; where the ray is
+  // within the voxel.
   logic ask_valid, drop;
   logic [SLOT_W-1:0] ask_slot;
   logic [CELL_W-1:0] ask_base;
@@ -114,27 +115,28 @@ module gridrt_expand #(
       .cells_o(ask_cells)
   );
   assign drop = ask_valid && ask_enter > limit;
-  assign drop_o.valid = drop;
-  assign drop_o.slot = ask_slot;
-  assign cell_enable_o = ask_valid && !drop;
+  assign cell_enable_o = ask_valid;
   assign cell_address_o = ask_base + CELL_W'(ask_rank);
 
   // Waiting for the record.
-  logic read1_valid, read2_valid;
+  logic read1_valid, read1_drop, read2_valid;
   logic [SLOT_W+CELLS_W+DIST_W-1:0] read1, read2;
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
       read1_valid <= 1'b0;
+      read1_drop  <= 1'b0;
       read2_valid <= 1'b0;
     end else begin
-      read1_valid <= cell_enable_o;
-      read2_valid <= read1_valid;
+      read1_valid <= ask_valid;
+      read1_drop  <= drop;
+      read2_valid <= read1_valid && !read1_drop;
     end
   end
   always_ff @(posedge clk_i) begin
-    if (cell_enable_o) read1 <= {ask_slot, ask_cells, ask_enter};
+    if (ask_valid) read1 <= {ask_slot, ask_cells, ask_enter};
     if (read1_valid) read2 <= read1;
   end
+  assign drop_o = {read1_drop, read1[CELLS_W+DIST_W+:SLOT_W]};
 
   gridrt_pkg::task_t made;
   logic [PE_W-1:0] made_pe;
@@ -165,10 +167,10 @@ module gridrt_expand #(
   logic leaves;
   logic [USED_W-1:0] used_next;
   assign leaves = task_valid_o && task_ready_i;
-  assign used_next = used + USED_W'(go) - USED_W'(drop) - USED_W'(leaves);
+  assign used_next = used + USED_W'(go) - USED_W'(read1_drop) - USED_W'(leaves);
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) used <= '0;
-    else if (go || drop || leaves) used <= used_next;
+    else if (go || read1_drop || leaves) used <= used_next;
   end
 
   logic unused;

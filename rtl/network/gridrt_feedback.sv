@@ -144,7 +144,8 @@ module gridrt_feedback #(
   // Slots by state: busy from allocation to commit, over once nothing more is traversed.
   logic [SLOTS-1:0] busy, over, told, waited;
   logic [SLOTS-1:0] settled, ready, after, upper, pick, pick_q;
-  logic free_q;
+  logic free_q, commit_q, hit_q;
+  logic [ENTRY_W-1:0] entry_q;
 
   assign settled = busy & over & none;
   assign walking_o = busy & ~over;
@@ -162,12 +163,14 @@ module gridrt_feedback #(
       after <= '0;
       pick_q <= '0;
       free_q <= 1'b0;
+      commit_q <= 1'b0;
       commit_o <= 1'b0;
     end else begin
+      commit_o <= commit_q;
       pick_q   <= pick;
       // With feedback whatever is ready is settled and has not been told.
       free_q   <= FEEDBACK ? ready != '0 : (pick & settled) != '0;
-      commit_o <= FEEDBACK ? ready != '0 : (pick & ~told) != '0;
+      commit_q <= FEEDBACK ? ready != '0 : (pick & ~told) != '0;
       if (pick_q != '0) after <= ~(pick_q | (pick_q - SLOTS'(1)));
       busy <= busy & ~(pick & settled);
       told <= told | pick;
@@ -184,7 +187,7 @@ module gridrt_feedback #(
     end
   end
 
-  // The clock after the choice: number of the slot, its entry, its answer.
+  // The clock after the choice: number of the slot, its entry, its answer, which leaves a clock later.
   always_comb begin
     pick_slot = '0;
     for (int unsigned s = 0; s < SLOTS; s++) begin
@@ -202,19 +205,26 @@ module gridrt_feedback #(
       .write_address_i(INDEX_W'(free_slot)),
       .write_data_i(entry_i),
       .read_address_i(INDEX_W'(pick_slot)),
-      .read_data_o(commit_entry_o)
+      .read_data_o(entry_q)
   );
 
-  assign commit_hit_o = (pick_q & has_hit) != '0;
-  assign commit_id_o = commit_hit_o ? best_id : gridrt_pkg::NO_ID;
-  assign wait_o = commit_o && commit_hit_o && (pick_q & waited) != '0;
+  assign hit_q = (pick_q & has_hit) != '0;
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) wait_o <= 1'b0;
+    else wait_o <= commit_q && hit_q && (pick_q & waited) != '0;
+  end
+  always_ff @(posedge clk_i) begin
+    commit_entry_o <= entry_q;
+    commit_hit_o <= hit_q;
+    commit_id_o <= hit_q ? best_id : gridrt_pkg::NO_ID;
+  end
 
 `ifdef GRIDRT_ASSERT
   always_ff @(posedge clk_i) begin
     if (rst_ni) begin
       assert (!(take && busy[INDEX_W'(free_slot)]));
       assert (free_q == ((pick_q & ~busy) != '0));
-      assert (!FEEDBACK || commit_o == free_q);
+      assert (!FEEDBACK || commit_q == free_q);
       // Nobody speaks of a slot without a ray.
       assert (!(hit_valid_o && !busy[INDEX_W'(hit_o.slot)]));
       assert (!(interrupt_o.valid && !busy[INDEX_W'(interrupt_o.slot)]));

@@ -1,6 +1,6 @@
 // How many tasks of each ray have not answered yet. The counts are kept as bit planes (plane b
 // holds bit b of every slot), so that adding and subtracting are a few logic operations on whole
-// planes. Ends of tasks count two clocks later: a count may be too high for a moment, never too low.
+// planes. Ends of tasks count three clocks later: a count may be too high for a moment, never too low.
 module gridrt_pending #(
     parameter int unsigned SLOTS = 48,
     parameter int unsigned TUS   = 4,
@@ -42,6 +42,13 @@ module gridrt_pending #(
     end
   end
 
+  // What ends comes from far away, so it is in a register first.
+  logic [ENDS-1:0][gridrt_pkg::SLOT_EVENT_W-1:0] end_q;
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) end_q <= '0;
+    else end_q <= end_i;
+  end
+
   // How many ports end a task of the slot: carry-save adders over six one-hot vectors.
   gridrt_pkg::slot_event_t ends;
   logic [5:0][SLOTS-1:0] one;
@@ -51,7 +58,7 @@ module gridrt_pending #(
     one = '0;
     ends = '0;
     for (int unsigned e = 0; e < ENDS; e++) begin
-      ends = end_i[e];
+      ends = end_q[e];
       if (ends.valid) one[e] = SLOTS'(1) << ends.slot;
     end
     for (int unsigned i = 0; i < 2; i++) begin
@@ -80,27 +87,32 @@ module gridrt_pending #(
     end
   end
 
-  always_ff @(posedge clk_i or negedge rst_ni) begin
-    if (!rst_ni) begin
-      count   <= '0;
-      ended_q <= '0;
-    end else begin
-      count   <= count_next;
-      ended_q <= ended;
+  // What the counts will be decides what is told of them, which so comes from registers as well.
+  logic [SLOTS-1:0] above, several;
+  always_comb begin
+    above   = '0;
+    several = '0;
+    for (int unsigned b = 0; b < PLANES; b++) begin
+      if (b + 1 > AHEAD_LOG) above = above | count_next[b];
+      if (b >= 1) several = several | count_next[b];
     end
   end
 
-  logic [SLOTS-1:0] above;
-  always_comb begin
-    above  = '0;
-    many_o = '0;
-    for (int unsigned b = 0; b < PLANES; b++) begin
-      if (b + 1 > AHEAD_LOG) above = above | count[b];
-      if (b >= 1) many_o = many_o | count[b];
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      count <= '0;
+      ended_q <= '0;
+      few_o <= '1;
+      none_o <= '1;
+      many_o <= '0;
+    end else begin
+      count <= count_next;
+      ended_q <= ended;
+      few_o <= ~above;
+      none_o <= ~(several | count_next[0]);
+      many_o <= several;
     end
   end
-  assign few_o  = ~above;
-  assign none_o = ~(many_o | count[0]);
 
 `ifdef GRIDRT_ASSERT
   // No count wraps: what is subtracted was there, and the sum fits.

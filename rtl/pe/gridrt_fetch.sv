@@ -60,13 +60,12 @@ module gridrt_fetch #(
   // The sender has compared the task with the ray's limit as it was before the clock in which the
   // task comes, so only interrupts from then on matter. Limits never rise.
   gridrt_pkg::interrupt_t interrupt;
-  logic was_cancelled;
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) interrupt <= '0;
     else interrupt <= interrupt_i;
   end
-  assign cancelled = CANCEL && (was_cancelled || (interrupt.valid && interrupt.slot == slot &&
-                                                  enter > interrupt.limit));
+  logic late;
+  assign late = interrupt.valid && interrupt.slot == slot && enter > interrupt.limit;
 
   // Rows in the queue and on their way to it never exceed its size.
   logic [INDEX_W:0] rows;
@@ -87,7 +86,7 @@ module gridrt_fetch #(
     end
   end
   always_ff @(posedge clk_i) begin
-    was_cancelled <= cancelled && !(task_valid_i && task_ready_o);
+    cancelled <= CANCEL && (cancelled || late) && !(task_valid_i && task_ready_o);
     if (task_valid_i && task_ready_o) begin
       slot <= task_i.slot;
       at <= task_i.first;
@@ -169,6 +168,7 @@ module gridrt_fetch #(
     );
   end
 
+  logic [3:0] masked;
   always_comb begin
     for (int unsigned i = 0; i < WAY; i++) begin
       case (cells_2[CELLS_W-1-:2])
@@ -179,10 +179,10 @@ module gridrt_fetch #(
     end
   end
   always_comb begin
-    masked_o = '0;
+    masked = '0;
     for (int unsigned i = 0; i < WAY; i++) begin
       pass[i] = wanted_3[i] && (!MASK || match[i]);
-      if (valid_3 && wanted_3[i] && !pass[i]) masked_o = masked_o + 4'd1;
+      if (valid_3 && wanted_3[i] && !pass[i]) masked = masked + 4'd1;
     end
   end
 
@@ -196,7 +196,9 @@ module gridrt_fetch #(
       valid_4 <= 1'b0;
       begun   <= 1'b0;
       none_o  <= '0;
+      masked_o <= '0;
     end else begin
+      masked_o <= masked;
       valid_1 <= go;
       valid_2 <= valid_1;
       valid_3 <= valid_2;

@@ -21,10 +21,10 @@ module gridrt_queue #(
 );
   localparam int unsigned TASK_W = gridrt_pkg::TASK_W;
 
-  logic out_valid, cancelled;
+  logic out_valid, held, cancelled, moves;
   logic [TASK_W-1:0] out_data;
   logic [$clog2(QUEUE+1)-1:0] count;
-  gridrt_pkg::task_t head;
+  gridrt_pkg::task_t next, head;
   logic [gridrt_pkg::DIST_W-1:0] limit;
 
   gridrt_fifo #(
@@ -37,11 +37,11 @@ module gridrt_queue #(
       .in_ready_o (task_ready_o),
       .in_data_i  (task_i),
       .out_valid_o(out_valid),
-      .out_ready_i(cancelled ? drop_ready_i : head_ready_i),
+      .out_ready_i(moves),
       .out_data_o (out_data),
       .count_o    (count)
   );
-  assign head = out_data;
+  assign next = out_data;
 
   gridrt_limits #(
       .SLOTS(SLOTS)
@@ -50,13 +50,31 @@ module gridrt_queue #(
       .rst_ni,
       .alloc_i,
       .interrupt_i,
-      .slot_i (head.slot),
+      .slot_i (next.slot),
       .limit_o(limit)
   );
 
-  assign cancelled = CANCEL && head.enter > limit;
-  assign head_valid_o = out_valid && !cancelled;
+  // The head is in a register, and so is what is known of it: all interrupts up to the clock before.
+  logic next_late, head_late;
+  assign next_late = interrupt_i.valid && interrupt_i.slot == next.slot && next.enter > interrupt_i.limit;
+  assign head_late = interrupt_i.valid && interrupt_i.slot == head.slot && head.enter > interrupt_i.limit;
+  assign moves = !held || (cancelled ? drop_ready_i : head_ready_i);
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) begin
+      held <= 1'b0;
+      cancelled <= 1'b0;
+    end else if (moves) begin
+      held <= out_valid;
+      cancelled <= CANCEL && (next.enter > limit || next_late);
+    end else begin
+      cancelled <= CANCEL && (cancelled || head_late);
+    end
+  end
+  always_ff @(posedge clk_i) begin
+    if (moves) head <= next;
+  end
+  assign head_valid_o = held && !cancelled;
   assign head_o = head;
-  assign drop_valid_o = out_valid && cancelled;
-  assign waiting_o = count != '0;
+  assign drop_valid_o = held && cancelled;
+  assign waiting_o = held || count != '0;
 endmodule

@@ -56,27 +56,29 @@ module gridrt_quotient #(
 
   // The product is 4 times what it was, with 3 for the 1 that it lacks, less the length for each unit
   // that the two bits are short of 3. In the first step it lacks nothing yet, and the 1 is taken away;
-  // for tn = det it never is, which leaves as much above 2^24 as 2^24 + 1 lengths do.
+  // for tn = det it never is, which leaves as much above 2^24 as 2^24 + 1 lengths do. It follows the
+  // bits by a clock; the limit does not wait for the register.
   logic [B+1:0] multiple;
-  logic lacks, product_below;
+  logic lacks, product_below, follows, was_bit_1, was_bit_2;
   logic [ACC_W-1:0] next_product;
   assign {next_product, product_below} = {product[ACC_W-3:0], {3{lacks}}} - {(ACC_W)'(multiple), 1'b1};
   gridrt_add_sub #(  // as a module of its own it does not become one slow sum of three
       .WIDTH(B + 2)
   ) i_multiple (
       .sub_i(1'b0),
-      .a_i  (no_bit_1 ? {1'b0, length, 1'b0} : '0),
-      .b_i  (no_bit_2 ? {2'b00, length} : '0),
+      .a_i  (was_bit_1 ? '0 : {1'b0, length, 1'b0}),
+      .b_i  (was_bit_2 ? '0 : {2'b00, length}),
       .sum_o(multiple)
   );
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
       left <= '0;
-    end else if (start_i) begin
-      left <= 4'(STEPS);
-    end else if (left != '0) begin
-      left <= left - 1'b1;
+      follows <= 1'b0;
+    end else begin
+      follows <= left != '0;
+      if (start_i) left <= 4'(STEPS);
+      else if (left != '0) left <= left - 1'b1;
     end
   end
 
@@ -91,7 +93,11 @@ module gridrt_quotient #(
       lacks <= whole;
     end else if (left != '0) begin
       rest <= last;
+      was_bit_1 <= !no_bit_1;
+      was_bit_2 <= !no_bit_2;
       quotient <= {quotient[gridrt_pkg::Q_W-3:0], !no_bit_1 && !stays_whole, !no_bit_2 && !stays_whole};
+    end
+    if (follows && !start_i) begin
       product <= next_product;
       lacks <= 1'b1;
     end
@@ -102,7 +108,7 @@ module gridrt_quotient #(
 
   assign busy_o = left != '0;
   assign quotient_o = quotient;
-  assign limit_o = gridrt_pkg::DIST_W'(product >> gridrt_pkg::KEY_BITS);
+  assign limit_o = gridrt_pkg::DIST_W'((follows ? next_product : product) >> gridrt_pkg::KEY_BITS);
 
 `ifdef GRIDRT_ASSERT
   always_ff @(posedge clk_i) begin

@@ -226,27 +226,31 @@ module gridrt_resolve #(
     end
   end
 
-  // The event that leaves next waits in a register, for the choice among PEs takes long.
+  // The event that leaves next waits in registers, for the choice among PEs takes long.
   logic finished, out_ready;
+  logic [gridrt_pkg::EVENT_W-1:0] event_now;
   assign finished = out_valid && !(out_divides && dividing[out_lane]);
-  assign out_ready = !event_valid_o || event_ready_i;
   assign leaves = finished && out_ready;
-  always_ff @(posedge clk_i or negedge rst_ni) begin
-    if (!rst_ni) event_valid_o <= 1'b0;
-    else if (out_ready) event_valid_o <= finished;
-  end
-  always_ff @(posedge clk_i) begin
-    if (out_ready) begin
-      event_o <= {
-        out_slot,
-        out_last,
-        out_hit,
-        out_divides ? quotient[out_lane] : {gridrt_pkg::Q_W{1'b0}},
-        out_id,
-        out_divides ? limit[out_lane] : {gridrt_pkg::DIST_W{1'b0}}
-      };
-    end
-  end
+  assign event_now = {
+    out_slot,
+    out_last,
+    out_hit,
+    out_divides ? quotient[out_lane] : {gridrt_pkg::Q_W{1'b0}},
+    out_id,
+    out_divides ? limit[out_lane] : {gridrt_pkg::DIST_W{1'b0}}
+  };
+  gridrt_skid #(
+      .WIDTH(gridrt_pkg::EVENT_W)
+  ) u_leaving (
+      .clk_i,
+      .rst_ni,
+      .in_valid_i(finished),
+      .in_ready_o(out_ready),
+      .in_data_i(event_now),
+      .out_valid_o(event_valid_o),
+      .out_ready_i(event_ready_i),
+      .out_data_o(event_o)
+  );
 
   logic unused;
   assign unused = (^count) ^ (^id_other) ^ entry_room ^ (^order_count);

@@ -1,5 +1,6 @@
 // Which ray slot steps next: round robin among the slots that are ready and may step, those with
-// nothing pending first. A slot granted is not ready again until its step has ended.
+// nothing pending first. A slot granted is not ready again until its step has ended. What is pending
+// decides a clock later: of a ready slot it only grows less.
 module gridrt_schedule #(
     parameter int unsigned COUNT = 16,
     localparam int unsigned INDEX_W = (COUNT > 1) ? $clog2(COUNT) : 1
@@ -15,11 +16,10 @@ module gridrt_schedule #(
     output logic [INDEX_W-1:0] slot_o
 );
   logic [COUNT-1:0] ready, after;  // after: slots behind the last one granted
-  logic [COUNT-1:0] able, first, chosen, later, pick;
+  logic [COUNT-1:0] able, first, able_next;  // first: those of able with nothing pending
+  logic [COUNT-1:0] chosen, later, pick;
 
   always_comb begin
-    able = ready & few_i;
-    first = able & idle_i;
     chosen = (first != '0) ? first : able;
     later = chosen & after;
     pick = (later != '0) ? later : chosen;
@@ -30,12 +30,17 @@ module gridrt_schedule #(
     end
   end
   assign grant_o = issue_i && able != '0;
+  assign able_next = ready & few_i & (grant_o ? ~pick : '1);
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
       ready <= '0;
+      able  <= '0;
+      first <= '0;
       after <= '0;
     end else begin
+      able  <= able_next;
+      first <= able_next & idle_i;
       if (grant_o) begin
         ready <= ready & ~pick;
         after <= ~(pick | (pick - 1'b1));
@@ -46,6 +51,7 @@ module gridrt_schedule #(
 
 `ifdef GRIDRT_ASSERT
   always_ff @(posedge clk_i) begin
+    if (rst_ni) assert ((able & ~ready) == '0 && (first & ~able) == '0);
     if (rst_ni && again_i) begin
       assert (!ready[again_slot_i]);
       assert (32'(again_slot_i) < COUNT);

@@ -15,6 +15,7 @@ package gridrt_state_pkg;
   // A quarter-voxel is edge * 2^UNIT_SHIFT units of a lateral position, a unit 2^-FRACTION steps.
   localparam int unsigned UNIT_SHIFT = 11;
   localparam int unsigned REST_W = 28;  // within a quarter-voxel
+  localparam int unsigned START_W = 200;  // of start_t, for registers
   /* verilator lint_on UNUSEDPARAM */
 
   // Per axis x, y, z.

@@ -54,7 +54,7 @@ module gridrt_traverse #(
   localparam int unsigned CELL_W = gridrt_pkg::CELL_W;
   localparam int unsigned EDGE_W = gridrt_state_pkg::EDGE_W;
   localparam int unsigned REST_W = gridrt_state_pkg::REST_W;
-  localparam int unsigned STATE_W = 200;  // of start_t
+  localparam int unsigned STATE_W = gridrt_state_pkg::START_W;
   localparam int unsigned INDEX_W = (COUNT > 1) ? $clog2(COUNT) : 1;
 
   if (TUS < 1 || TUS > 4 || INDEX >= TUS || SLOTS % TUS != 0 || SLOTS < TUS ||
@@ -83,14 +83,17 @@ module gridrt_traverse #(
   logic [INDEX_W-1:0] grant_slot, s1_slot, s2_slot, s3_slot, s4_slot, s5_slot, s6_slot, s7_slot, s8_slot, s9_slot, s10_slot;
   gridrt_state_pkg::start_t s1_start;
   logic s1_starts;
-  assign start_ready_o = may_issue;
-  assign start = start_valid_i && start_ready_o;
+  // It waits in the register that it begins from.
+  logic waits;
+  logic [INDEX_W-1:0] waiting_slot;
+  assign start_ready_o = !waits;
+  assign start = waits && may_issue;
   gridrt_schedule #(
       .COUNT(COUNT)
   ) i_schedule (
       .clk_i,
       .rst_ni,
-      .issue_i(may_issue && !start_valid_i),
+      .issue_i(may_issue && !waits),
       .few_i,
       .idle_i,
       .again_i(again),
@@ -100,13 +103,21 @@ module gridrt_traverse #(
   );
   logic s10_writes;
   always_ff @(posedge clk_i or negedge rst_ni) begin
-    if (!rst_ni) valid <= '0;
-    else valid <= {valid[9:1], start || grant};
+    if (!rst_ni) begin
+      waits <= 1'b0;
+      valid <= '0;
+    end else begin
+      waits <= waits ? !may_issue : start_valid_i;
+      valid <= {valid[9:1], start || grant};
+    end
   end
   always_ff @(posedge clk_i) begin
     s1_starts <= start;
-    if (start) s1_start <= start_i;
-    if (start || grant) s1_slot <= start ? place(start_slot_i) : grant_slot;
+    if (start_valid_i && !waits) begin
+      s1_start <= start_i;
+      waiting_slot <= place(start_slot_i);
+    end
+    if (start || grant) s1_slot <= waits ? waiting_slot : grant_slot;
     if (valid[1]) s2_slot <= s1_slot;
     if (valid[2]) s3_slot <= s2_slot;
     if (valid[3]) s4_slot <= s3_slot;
@@ -397,8 +408,8 @@ module gridrt_traverse #(
   always_ff @(posedge clk_i) begin
     if (rst_ni) begin
       assert (!done_valid_o || !again);
-      if (start) assert (slot_of(place(start_slot_i)) == start_slot_i);
-      if (start) assert (32'(start_slot_i) < SLOTS);
+      if (start_valid_i) assert (slot_of(place(start_slot_i)) == start_slot_i);
+      if (start_valid_i) assert (32'(start_slot_i) < SLOTS);
     end
   end
 `endif

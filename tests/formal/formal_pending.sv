@@ -36,11 +36,12 @@ module formal_pending #(
       .many_o(many)
   );
 
-  // left: tasks that have not ended, by slot; count: what the block must think of the watched slot.
-  logic [SLOTS-1:0][5:0] left, made, ended;
-  logic [5:0] count, ended_q, made_here, ended_here, left_here;
+  // left: tasks that have not ended, by slot; counted: with those that have ended so lately that the
+  // block does not know of it; count: what it must think of the watched slot.
+  logic [SLOTS-1:0][5:0] left, counted, made, ended, ended_q, ended_qq;
+  logic [5:0] count, left_here;
   always_comb begin
-    {made_here, ended_here, left_here} = '0;
+    {count, left_here} = '0;
     for (int unsigned s = 0; s < SLOTS; s++) begin
       made[s] = '0;
       for (int unsigned t = 0; t < TUS; t++) begin
@@ -50,7 +51,7 @@ module formal_pending #(
       for (int unsigned e = 0; e < ENDS; e++) begin
         if (end_i[e] == {1'b1, SLOT_W'(s)}) ended[s] = ended[s] + 6'd1;
       end
-      if (slot == SLOT_W'(s)) {made_here, ended_here, left_here} = {made[s], ended[s], left[s]};
+      if (slot == SLOT_W'(s)) {count, left_here} = {counted[s], left[s]};
     end
   end
 
@@ -62,16 +63,18 @@ module formal_pending #(
     end
     if (!rst_n) begin
       left <= '0;
-      count <= '0;
+      counted <= '0;
       ended_q <= '0;
+      ended_qq <= '0;
     end else begin
       for (int unsigned s = 0; s < SLOTS; s++) begin
         assume (ended[s] <= left[s]);  // a task ends once, after it was made
-        assume (left[s] + made[s] <= 6'(2 * AHEAD - 1 + 8));  // what the units keep to
+        assume (counted[s] + made[s] <= 6'(2 * AHEAD - 1 + 8));  // what the units keep to
         left[s] <= left[s] + made[s] - ended[s];
+        counted[s] <= counted[s] + made[s] - ended_qq[s];
       end
-      count <= count + made_here - ended_q;
-      ended_q <= ended_here;
+      ended_q <= ended;
+      ended_qq <= ended_q;
 
       assert (few[slot] == (count < 6'(AHEAD)));
       assert (none[slot] == (count == '0));
