@@ -1,7 +1,7 @@
 // What the engine counts, a clock late: sums over units, and where clocks went while rays were in
 // flight.
 module gridrt_counts #(
-    parameter int unsigned SLOTS = 48,
+    parameter int unsigned SLOTS = 64,
     parameter int unsigned TUS   = 4,
     parameter int unsigned EXPS  = 2,
     parameter int unsigned PES   = 4

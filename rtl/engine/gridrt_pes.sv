@@ -2,7 +2,7 @@
 module gridrt_pes #(
     parameter int unsigned B = 17,
     parameter int unsigned PES = 4,
-    parameter int unsigned SLOTS = 48,
+    parameter int unsigned SLOTS = 64,
     parameter int unsigned QUEUE = 16,
     parameter int unsigned REFS = 8192,
     parameter int unsigned TRIS = 4096,

@@ -2,7 +2,7 @@
 // expanders with the memory of cells. Unit t feeds expander t modulo EXPS.
 module gridrt_walk #(
     parameter int unsigned B = 17,
-    parameter int unsigned SLOTS = 48,
+    parameter int unsigned SLOTS = 64,
     parameter int unsigned TUS = 4,  // 1 to 4
     parameter int unsigned EXPS = 2,  // 1 or 2, at most TUS
     parameter int unsigned BLOCKS = 4096,

@@ -2,7 +2,7 @@
 // compared one a clock, PEs in turn. A smaller quotient lowers the ray's limit: an interrupt to all
 // blocks. The key {quotient, id} decides, so the order of events changes no answer.
 module gridrt_best #(
-    parameter int unsigned SLOTS = 48,
+    parameter int unsigned SLOTS = 64,
     parameter int unsigned PES = 4,
     parameter bit FEEDBACK = 1'b1  // 0: the first hit stays (a wrong machine, for a test)
 ) (

@@ -2,7 +2,7 @@
 // behind the ray's limit, and sends the others to the PE that owns them. Voxels of the near slab
 // come first.
 module gridrt_expand #(
-    parameter int unsigned SLOTS = 48,
+    parameter int unsigned SLOTS = 64,
     parameter int unsigned DEPTH = 8,  // tasks on their way or waiting to leave
     localparam int unsigned SLOT_W = gridrt_pkg::SLOT_W,
     localparam int unsigned CELL_W = gridrt_pkg::CELL_W,

@@ -1,7 +1,7 @@
 // Settles the answer of each ray: gives slots to rays, counts their pending tasks, keeps their best
 // hits, and commits a ray once its traversal is over and every task has answered.
 module gridrt_feedback #(
-    parameter int unsigned SLOTS = 48,
+    parameter int unsigned SLOTS = 64,
     parameter int unsigned TUS = 4,
     parameter int unsigned EXPS = 2,
     parameter int unsigned PES = 4,

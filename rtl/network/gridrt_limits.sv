@@ -1,7 +1,7 @@
 // The limits of the rays in flight, as one block keeps them for itself. A ray starts without a
 // limit (all ones); each interrupt lowers it. The two never come in one clock (gridrt_feedback).
 module gridrt_limits #(
-    parameter int unsigned SLOTS = 48
+    parameter int unsigned SLOTS = 64
 ) (
     input  logic                                     clk_i,
     input  logic                                     rst_ni,

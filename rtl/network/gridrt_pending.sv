@@ -2,7 +2,7 @@
 // holds bit b of every slot), so that adding and subtracting are a few logic operations on whole
 // planes. Ends of tasks count three clocks later: a count may be too high for a moment, never too low.
 module gridrt_pending #(
-    parameter int unsigned SLOTS = 48,
+    parameter int unsigned SLOTS = 64,
     parameter int unsigned TUS   = 4,
     parameter int unsigned ENDS  = 6,  // ports that end tasks, at most 6
     parameter int unsigned AHEAD = 2    // 1, 2, 4, 8 or 16

@@ -1,7 +1,7 @@
 // Free ray slots, one list for each traversal unit (slot s belongs to unit s modulo TUS). Units
 // take turns; one without a free slot is passed over. After reset the lists fill themselves.
 module gridrt_slots #(
-    parameter int unsigned SLOTS = 48,
+    parameter int unsigned SLOTS = 64,
     parameter int unsigned TUS   = 4
 ) (
     input  logic                          clk_i,

@@ -8,7 +8,7 @@
 // its event. Tasks that need no test leave by the drop port.
 module gridrt_pe #(
     parameter int unsigned B = 17,
-    parameter int unsigned SLOTS = 48,
+    parameter int unsigned SLOTS = 64,
     parameter int unsigned QUEUE = 16,
     parameter int unsigned REFS = 8192,
     parameter int unsigned TRIS = 4096,

@@ -1,7 +1,7 @@
 // The tasks that wait for a PE. A task at the head whose ray has been hit before the task's slab
 // is cancelled: it leaves by the drop port while the PE is busy with another.
 module gridrt_queue #(
-    parameter int unsigned SLOTS = 48,
+    parameter int unsigned SLOTS = 64,
     parameter int unsigned QUEUE = 16,
     parameter bit CANCEL = 1'b1
 ) (

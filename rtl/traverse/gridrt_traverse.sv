@@ -10,7 +10,7 @@
 // A step that begins has room for its voxels in the queue to the expander, so nothing stalls.
 module gridrt_traverse #(
     parameter int unsigned B = 17,
-    parameter int unsigned SLOTS = 48,
+    parameter int unsigned SLOTS = 64,
     parameter int unsigned TUS = 4,
     parameter int unsigned INDEX = 0,
     parameter bit CANCEL = 1'b1,  // 0: limits are ignored

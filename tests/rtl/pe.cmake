@@ -5,7 +5,7 @@ foreach(bits 12 14 17)
   gridrt_rtl_bench(rtl_quotient_${bits} TOP gridrt_quotient PARAMETERS B=${bits}
                    SOURCES quotient_bench.cpp)
 endforeach()
-gridrt_rtl_bench(rtl_resolve_17 TOP gridrt_resolve PARAMETERS B=17 TRIS=64 SLOTS=48 DIVIDERS=3
+gridrt_rtl_bench(rtl_resolve_17 TOP gridrt_resolve PARAMETERS B=17 TRIS=64 SLOTS=64 DIVIDERS=3
                  SOURCES resolve_bench.cpp)
 gridrt_rtl_bench(rtl_resolve_14 TOP gridrt_resolve PARAMETERS B=14 TRIS=200 SLOTS=5 DIVIDERS=2
                  SOURCES resolve_bench.cpp)
@@ -13,7 +13,7 @@ gridrt_rtl_bench(rtl_resolve_12 TOP gridrt_resolve PARAMETERS B=12 TRIS=16 SLOTS
                  SOURCES resolve_bench.cpp)
 
 # The whole of it: as on the board, small, without cancelling, and with pauses inside.
-set(board B=17 SLOTS=48 QUEUE=16 REFS=8192 TRIS=4096 VERTS=2560 DIVIDERS=3 NUMBER=0)
+set(board B=17 SLOTS=64 QUEUE=16 REFS=8192 TRIS=4096 VERTS=2560 DIVIDERS=3 NUMBER=0)
 set(small B=12 SLOTS=6 QUEUE=3 REFS=300 TRIS=100 VERTS=64 DIVIDERS=1 NUMBER=2)
 gridrt_rtl_bench(rtl_pe_17 TOP gridrt_pe PARAMETERS ${board} SOURCES pe_bench.cpp LINK gridrt_hal gridrt_image)
 gridrt_rtl_bench(rtl_pe_12 TOP gridrt_pe PARAMETERS ${small} SOURCES pe_bench.cpp LINK gridrt_hal gridrt_image)
