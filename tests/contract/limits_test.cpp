@@ -47,7 +47,7 @@ TEST_P(Contract, TheChunksOfASceneAnswerAsOne) {
 /// As many triangles as a PE holds: small ones all over a cube, with three vertices each as long as
 /// there is room for vertices, then copies of them. None is degenerate on a lattice of `bits`.
 Scene full_scene(const MemorySizes& memory, int bits) {
-  const double reach = bits < kDefaultBits ? 0.012 : 0.003;
+  const double reach = bits < kDefaultBits ? 0.007 : 0.003;
   adversarial::Random random(42);
   Scene scene;
   const std::uint32_t own = std::min(memory.triangles, memory.vertices / 3);

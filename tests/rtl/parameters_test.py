@@ -46,7 +46,7 @@ CASES = [
     ("gridrt_engine", {"B": 14, "PES": 1}, None),
     ("gridrt_engine", {"B": 12, "PES": 2, "TUS": 1, "SLOTS": 16, "QUEUE": 4, "ROB": 16}, None),
     ("gridrt_engine", {"TUS": 4, "SLOTS": 64}, None),
-    ("gridrt_engine", {"TUS": 3}, None),
+    ("gridrt_engine", {"TUS": 3, "SLOTS": 63}, None),
     ("gridrt_shell", {"B": 12, "PES": 2, "MAX_PAYLOAD": 4194304, "LOG_WORDS": 64}, None),
     ("gridrt_shell", {"PES": 1, "BLOCKS": 64, "CELLS": 100, "REFS": 200, "TRIS": 50}, None),
     ("gridrt_engine", {"AHEAD": 16}, None),

@@ -76,7 +76,7 @@ TEST_F(Pe, FillsUpAndRecovers) {
 
 #ifndef GRIDRT_STALL
 // A hit in ten tests is too much for one divider.
-constexpr double kPace = GRIDRT_RTL_DIVIDERS >= 3 ? 0.9 : 0.59;
+constexpr double kPace = GRIDRT_RTL_DIVIDERS >= 3 ? 0.9 : 0.57;
 
 // The pace: tests for each clock in which there is work. Four references are read in a clock, so a
 // list of n takes (n + 3) / 4 clocks at the least if the mask leaves out most of it.
