@@ -150,34 +150,13 @@ module gridrt_traverse #(
   assign block_enable_o = valid[1];
   assign block_address_o = s1_look;
   always_ff @(posedge clk_i) begin
-    if (valid[1]) begin
-      s2_state <= s1_state;
-      s2_sub   <= s1_sub;
-    end
-    if (valid[2]) begin
-      s3_state <= s2_state;
-      s3_sub   <= s2_sub;
-    end
-    if (valid[3]) begin
-      s4_state <= s3_state;
-      s4_sub   <= s3_sub;
-    end
-    if (valid[4]) begin
-      s5_state <= s4_state;
-      s5_sub   <= s4_sub;
-    end
-    if (valid[5]) begin
-      s6_state <= s5_state;
-      s6_sub   <= s5_sub;
-    end
-    if (valid[6]) begin
-      s7_state <= s6_state;
-      s7_sub   <= s6_sub;
-    end
-    if (valid[7]) begin
-      s8_state <= s7_state;
-      s8_sub   <= s7_sub;
-    end
+    if (valid[1]) {s2_state, s2_sub} <= {s1_state, s1_sub};
+    if (valid[2]) {s3_state, s3_sub} <= {s2_state, s2_sub};
+    if (valid[3]) {s4_state, s4_sub} <= {s3_state, s3_sub};
+    if (valid[4]) {s5_state, s5_sub} <= {s4_state, s4_sub};
+    if (valid[5]) {s6_state, s6_sub} <= {s5_state, s5_sub};
+    if (valid[6]) {s7_state, s7_sub} <= {s6_state, s6_sub};
+    if (valid[7]) {s8_state, s8_sub} <= {s7_state, s7_sub};
     if (valid[8]) s9_state <= s8_state;
     if (valid[9]) s10_state <= s9_state;
   end
