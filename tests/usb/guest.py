@@ -75,11 +75,11 @@ class Guest:
             board.stdout.close()
         self.folder.cleanup()
 
-    def start_board(self, *words):
+    def start_board(self, *words, program="gridrt-virtual-board"):
         """A virtual board for the guest's USB; returns the path of its socket."""
         socket = self.path / f"board{len(self.boards)}"
-        program = need(BIN / "gridrt-virtual-board", "the virtual board")
-        self.boards.append(subprocess.Popen([program, "--redirect", socket, *map(str, words)],
+        words = [*map(str, words), *(["--redirect"] if program == "gridrt-virtual-board" else [])]
+        self.boards.append(subprocess.Popen([need(BIN / program, "the board"), *words, socket],
                                             stdout=subprocess.PIPE, text=True))
         if "waiting" not in self.boards[-1].stdout.readline():
             raise GuestError("the virtual board did not start")
