@@ -13,9 +13,9 @@
 #include "gridrt_usb.hpp"
 #include "host/pe/software_device.hpp"
 #include "tests/usb/guest_schedule.hpp"
-#include "virtual/listen.hpp"
-#include "virtual/redirection.hpp"
-#include "virtual/usb_function.hpp"
+#include "tools/virtual/listen.hpp"
+#include "tools/virtual/redirection.hpp"
+#include "tools/virtual/usb_function.hpp"
 
 namespace gridrt {
 namespace {
