@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cstdlib>
 #include <map>
 #include <optional>
 #include <utility>
@@ -70,13 +71,31 @@ class Names {
           if (cell != nullptr) names.visits_.emplace(std::pair(cell->pe, cell->first), visit);
           return true;
         });
+    // The board looks at a few voxels that the segment only comes close to.
+    const int axis = SlabMarch(grid, segment.p0, segment.p1).direction() / 2;
+    names.length_ = std::abs(segment.p1[axis] - segment.p0[axis]);
+    for (int z = 0; z < grid.count.z; ++z) {
+      for (int y = 0; y < grid.count.y; ++y) {
+        for (int x = 0; x < grid.count.x; ++x) {
+          const Cell* cell = memory->find({x, y, z});
+          if (cell != nullptr)
+            names.voxels_.emplace(std::pair(cell->pe, cell->first), glm::ivec3{x, y, z});
+        }
+      }
+    }
     return names;
   }
 
-  /// The voxel, among those that the segment meets, whose references begin there.
-  [[nodiscard]] const VoxelVisit* voxel(std::uint32_t pe, std::uint32_t first) const {
-    const auto found = visits_.find({pe, first});
-    return found == visits_.end() ? nullptr : &found->second;
+  /// The voxel whose references begin there, with the segment's part in it; for one that it does
+  /// not meet, the point where it enters the voxel's slab, so many lattice steps from its start.
+  [[nodiscard]] std::optional<VoxelVisit> voxel(std::uint32_t pe, std::uint32_t first,
+                                                std::uint32_t steps) const {
+    const auto met = visits_.find({pe, first});
+    if (met != visits_.end()) return met->second;
+    const auto found = voxels_.find({pe, first});
+    if (found == voxels_.end() || steps > static_cast<std::uint32_t>(length_)) return std::nullopt;
+    const Fraction enter{steps, length_};
+    return VoxelVisit{found->second, enter, enter};
   }
   [[nodiscard]] std::optional<std::uint32_t> triangle(std::uint32_t pe, std::uint32_t index) const {
     if (pe >= local_ids_.size() || index >= local_ids_[pe].size()) return std::nullopt;
@@ -95,7 +114,10 @@ class Names {
   std::vector<std::uint32_t> global_ids_;
   std::vector<std::vector<std::uint32_t>> local_ids_;  ///< by PE and index in its memory
   glm::ivec3 blocks_{1};
-  std::map<std::pair<std::uint32_t, std::uint32_t>, VoxelVisit> visits_;  ///< by PE and `first`
+  int length_ = 1;  ///< of the segment, along its dominant axis
+  using Place = std::pair<std::uint32_t, std::uint32_t>;  ///< PE and `first`
+  std::map<Place, VoxelVisit> visits_;                    ///< voxels that the segment meets
+  std::map<Place, glm::ivec3> voxels_;                    ///< all of them
 };
 
 class Translator {
@@ -146,10 +168,9 @@ class Translator {
   }
   bool task(std::uint32_t word, std::uint32_t next) {
     const std::uint32_t pe = bits(word, 1, 0);
-    const VoxelVisit* visit = names_.voxel(pe, bits(word, 15, 2));
-    if (visit == nullptr || next >> 28U != static_cast<std::uint32_t>(Word::kTaskMore)) {
-      return false;
-    }
+    if (next >> 28U != static_cast<std::uint32_t>(Word::kTaskMore)) return false;
+    const std::optional<VoxelVisit> visit = names_.voxel(pe, bits(word, 15, 2), bits(next, 25, 8));
+    if (!visit) return false;
     add({.kind = Kind::kVoxel,
          .voxel = visit->voxel,
          .pe = static_cast<int>(pe),

@@ -15,6 +15,7 @@ using protocol::FrameType;
 using protocol::SectionKind;
 
 constexpr int kMostAttempts = 64;  ///< commits tried before an upload is given up
+constexpr int kMostSilent = 16;    ///< of these, one after the other, without an answer
 
 /// Sends one section, a piece a frame.
 Result<void> send_section(Connection& connection, const protocol::CapabilitiesReport& capabilities,
@@ -143,12 +144,14 @@ Result<void> upload(Connection& connection, const Image& image,
     return {};
   };
   if (auto sent = send_all(); !sent) return sent;
-  for (int attempt = 0; attempt < kMostAttempts; ++attempt) {
+  int silent = 0;
+  for (int attempt = 0; attempt < kMostAttempts && silent < kMostSilent; ++attempt) {
     const Result<Reply> reply = try_commit(connection, image);
     if (!reply) return std::unexpected(reply.error());
     const auto code = static_cast<ErrorCode>(reply->error.code);
     if (reply->answered && code == ErrorCode::kNone) return {};
     ++retries;
+    silent = reply->answered ? 0 : silent + 1;
     if (!reply->answered || code == ErrorCode::kBadPayloadCrc) continue;
     if (code != ErrorCode::kMissingSection && code != ErrorCode::kBadSectionCrc) {
       return fail(ErrorKind::kDevice,
@@ -163,6 +166,11 @@ Result<void> upload(Connection& connection, const Image& image,
             ? send_all()
             : send_kind(kind, static_cast<std::uint8_t>(reply->error.detail >> 8U));
     if (!again) return again;
+  }
+  if (silent == kMostSilent) {
+    return fail(ErrorKind::kTimeout,
+                fmt::format("the device is silent: no answer to an image in {} attempts", silent),
+                "check the device and its cable");
   }
   return fail(ErrorKind::kTimeout,
               fmt::format("the image could not be loaded in {} attempts", kMostAttempts),

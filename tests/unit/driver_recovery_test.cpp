@@ -88,6 +88,8 @@ TEST(RecoveryLimits, ADeadLinkIsATimeoutNotAHang) {
   const Result<void> loaded = session->load(image);
   ASSERT_FALSE(loaded.has_value());
   EXPECT_EQ(loaded.error().kind, ErrorKind::kTimeout);
+  EXPECT_NE(loaded.error().message.find("no answer to an image in 16 attempts"), std::string::npos)
+      << loaded.error().message;
 }
 
 TEST(SequenceNumbers, RollOverInTheMiddleOfAPicture) {

@@ -67,7 +67,7 @@ TEST(Limits, EveryMemoryIsCheckedToTheEntry) {
   expect_over(use, "4097 blocks");
   use = full_use();
   ++use.cells;
-  expect_over(use, "8193 voxels");
+  expect_over(use, "6145 voxels");
   use = full_use();
   ++use.longest_list;
   expect_over(use, "1024 triangles in one voxel");
@@ -79,7 +79,7 @@ TEST(Limits, EveryMemoryIsCheckedToTheEntry) {
   expect_over(use, "2561 vertices in PE 3");
   use = full_use();
   ++use.pes[0].references;
-  expect_over(use, "10241 references in PE 0");
+  expect_over(use, "8193 references in PE 0");
   EXPECT_TRUE(check_limits(protocol::Layout::kWide, memory_sizes(protocol::Layout::kWide), use));
 }
 

@@ -124,7 +124,7 @@ class Guest:
                  "-machine", "pc", "-cpu", "max", "-nodefaults", "-no-user-config", "-display",
                  "none", "-no-reboot", "-kernel", self.kernel,
                  "-initrd", self.initramfs(script, len(boards)),
-                 "-append", "console=ttyS0 quiet panic=-1 mitigations=off tsc=reliable "
+                 "-append", "console=ttyS0 quiet panic=-1 no_timer_check mitigations=off tsc=reliable "
                  "suspend.pm_test_delay=1",
                  "-serial", f"file:{console}", "-serial", f"file:{parcel}", "-device", "qemu-xhci"]
         for i, socket in enumerate(boards):

@@ -21,7 +21,7 @@ namespace gridrt {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr int kTimeoutMs = 400;
+constexpr int kTimeoutMs = 300;
 constexpr double kLongest = 60.0;  ///< seconds; the limits add up to less
 
 template <class Record>
