@@ -56,10 +56,16 @@ module gridrt_core #(
   logic engine_hit_valid, hung;
   assign hit_valid = engine_hit_valid && !hung;
 `ifdef GRIDRT_TEST_HANG
-  // For tests of the watchdog: a ray that ignores this id is the last one that is ever answered.
+  // For tests of the watchdog: behind a ray that ignores this id, no hit is offered any more.
+  logic doomed;
   always_ff @(posedge clk_i or negedge rst_ni) begin
-    if (!rst_ni) hung <= 1'b0;
-    else if (ray_valid && ray_ready && ray_ignore == gridrt_pkg::ID_W'('hDEAD0)) hung <= 1'b1;
+    if (!rst_ni) begin
+      doomed <= 1'b0;
+      hung   <= 1'b0;
+    end else begin
+      if (ray_valid && ray_ready && ray_ignore == gridrt_pkg::ID_W'('hDEAD0)) doomed <= 1'b1;
+      if (doomed && !(hit_valid && !hit_ready)) hung <= 1'b1;
+    end
   end
 `else
   assign hung = 1'b0;
