@@ -20,9 +20,10 @@ constexpr std::uint64_t kNever = ~std::uint64_t{0};
 /// Clocks of one schedule and the recovery after it: above 16 attempts of the longest silence.
 constexpr std::uint64_t kMostClocks = 8'000'000;
 constexpr std::uint64_t kSilence = 5000;     ///< longest wait for an answer in clocks
-constexpr std::uint64_t kReboot = 400'000;   ///< the same where a hang and a boot may lie between
+constexpr std::uint64_t kReboot = 250'000;   ///< the same where a hang and a boot may lie between
 constexpr std::uint32_t kIdleClocks = 2000;  ///< an unfinished frame is given up
 constexpr std::uint64_t kKinds = 10;
+constexpr std::uint64_t kSurelySent = 100;  ///< rays of a picture that are no misses by definition
 
 std::uint64_t schedules() {
   const char* text = std::getenv("GRIDRT_SIM_SCHEDULES");
@@ -56,7 +57,7 @@ Schedule make_schedule(std::uint64_t seed) {
   s.batch = 1 + random() % 60;
   s.in_flight = 1 + static_cast<int>(random() % 6);
   s.boots = random() % 2 == 0;
-  s.moment = 1 + random() % 24;
+  s.moment = 1 + random() % (kSurelySent / s.batch + 1);
   s.to_board.limit = s.to_host.limit = 1 + random() % 4;
   switch (seed % kKinds) {
     case 0:
@@ -165,6 +166,7 @@ class BadCable final : public Transport {
     return link_.set_feature(id, body);
   }
 
+  [[nodiscard]] bool happened() const { return happened_; }
   [[nodiscard]] std::uint64_t faults() const {
     return to_board_.faults() + to_host_.faults() + (happened_ ? 1 : 0);
   }
@@ -248,6 +250,8 @@ Outcome run(SimTransport& link, SimBoard& board, const Schedule& s, std::uint64_
   };
   out.done = work();
   out.faults = cable.faults();
+  // Else the schedule has tested nothing.
+  EXPECT_EQ(cable.happened(), s.event != Event::kNone) << "seed " << seed << ", " << s.kind;
   return out;
 }
 
