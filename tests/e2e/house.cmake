@@ -15,6 +15,7 @@ house_test(package ${Python3_EXECUTABLE} tests/e2e/package_test.py
 # The rest speaks of the tools and the build tree that tools/test has prepared.
 if(PROJECT_BINARY_DIR STREQUAL "${PROJECT_SOURCE_DIR}/build")
   house_test(demo ${Python3_EXECUTABLE} tests/e2e/demo_test.py)
+  set_tests_properties(house.demo PROPERTIES RUN_SERIAL ON)  # it may link the programs again
   # Unit tests and short runs of the fuzzers under sanitizers (cmake --build --preset fuzz).
   add_test(NAME sanitized COMMAND
     ${CMAKE_CTEST_COMMAND} --test-dir ${PROJECT_SOURCE_DIR}/build-fuzz --no-tests=error
