@@ -11,3 +11,5 @@ foreach(bits 12 14 17)
   gridrt_rtl_bench(rtl_setup_${bits} TOP gridrt_setup PARAMETERS B=${bits} SOURCES setup_bench.cpp
                    LINK gridrt_grid)
 endforeach()
+gridrt_rtl_bench(rtl_traverse TOP gridrt_traverse PARAMETERS B=17 SOURCES traverse_bench.cpp
+                 LINK gridrt_image)

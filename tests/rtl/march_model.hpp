@@ -1,5 +1,5 @@
 // What ray setup and a traversal unit compute, bit for bit, in plain integers: the reference that
-// the RTL is compared with (setup_test, traverse_test) and that march_test compares with exact
+// the RTL is compared with (setup_bench, traverse_bench) and that march_test compares with exact
 // truth.
 //
 // Positions on a lateral axis are in units of 2^-kFraction lattice steps; a quarter of a voxel is

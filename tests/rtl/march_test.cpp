@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "host/image/blocks.hpp"
+#include "tests/rtl/march_blocks.hpp"
 #include "tests/rtl/march_model.hpp"
 #include "tests/rtl/march_segments.hpp"
 
@@ -140,12 +141,12 @@ void check(const Case& c, const Segment& s, Random& random) {
     EXPECT_EQ(v.enter, std::max(face, 0));
     EXPECT_LE(v.enter, exact.length());
   }
-  // Points of the segment: both ends, faces of half-slabs, and anywhere.
+  // Points of the segment: both ends, at faces of quarter-slabs (to half a step), and anywhere.
   std::vector<std::int64_t> points{0, 2 * exact.length()};
   for (int i = 0; i < 24; ++i) {
     points.push_back(random.between(0, 2 * static_cast<int>(exact.length())));
     const std::int64_t face =
-        random.between(0, 4 * g.half_blocks[axis]) * std::int64_t{g.edge[axis]};
+        random.between(0, 8 * g.half_blocks[axis]) * std::int64_t{g.edge[axis]} / 2;
     const std::int64_t n = std::abs(face - 2 * std::int64_t{s.p0[axis]});
     if (n <= 2 * exact.length()) points.push_back(n);
   }
@@ -184,24 +185,6 @@ TEST_P(March, EveryPointOfTheSegmentIsVisitedAndLittleElse) {
 INSTANTIATE_TEST_SUITE_P(Bits, March, testing::Values(12, 14, 17));
 
 using Found = std::multimap<std::tuple<int, int>, std::tuple<std::uint64_t, int>>;
-
-/// Blocks with random voxels and the skip field that belongs to them.
-std::vector<Block> random_blocks(Random& random, const Grid& g, double density) {
-  const auto total = static_cast<std::size_t>(g.half_blocks.x * g.half_blocks.y * g.half_blocks.z);
-  std::vector<std::uint8_t> occupancy(total, 0);
-  for (std::uint8_t& o : occupancy) {
-    if (random.chance(density)) o = static_cast<std::uint8_t>(random.between(1, 255));
-  }
-  const std::vector<Jumps> jumps = skip_field(g.half_blocks, occupancy);
-  std::vector<Block> blocks(total);
-  for (std::size_t i = 0; i < total; ++i) {
-    blocks[i].occupied = occupancy[i] != 0;
-    blocks[i].occ = occupancy[i];
-    blocks[i].base = static_cast<int>(i % 8192);
-    for (std::size_t d = 0; d < 6; ++d) blocks[i].jump[d] = jumps[i][d];
-  }
-  return blocks;
-}
 
 /// Voxels dispatched, with their cells and entries; `plain`: without jumps.
 Found dispatched(const Grid& g, const Segment& s, const std::vector<Block>& blocks, bool plain,
