@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <optional>
-#include <thread>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,6 +10,7 @@
 #include "host/driver/session.hpp"
 #include "host/driver/sim_device.hpp"
 #include "host/driver/usb_device.hpp"
+#include "host/grid/parallel.hpp"
 #include "host/mpi/connect.hpp"
 #include "host/pe/ray_stream.hpp"
 #include "host/pe/software_device.hpp"
@@ -86,9 +86,7 @@ Result<ScheduleOptions> choose_schedule(const DeviceOptions& options) {
                   fmt::format("use one of: {}", fmt::join(names, ", ")));
     }
     out.simd = options.simd;
-    const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-    const bool all = options.threads == 0 && *known != Schedule::kPaper;
-    out.threads = all ? cores : options.threads;
+    out.threads = *known == Schedule::kPaper ? options.threads : resolve_threads(options.threads);
   }
   return out;
 }

@@ -5,7 +5,6 @@
 #include <atomic>
 #include <chrono>
 #include <numeric>
-#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
@@ -14,7 +13,7 @@
 #include "host/driver/ray_log.hpp"
 #include "host/driver/ray_order.hpp"
 #include "host/driver/upload.hpp"
-#include "host/grid/pieces.hpp"
+#include "host/grid/parallel.hpp"
 
 namespace gridrt {
 namespace {
@@ -28,9 +27,7 @@ constexpr int kMostAttempts = 16;  ///< times that one batch is sent before it i
 
 Session::Session(std::unique_ptr<Transport> transport, const DeviceOptions& options)
     : options_(options),
-      threads_(options.threads > 0
-                   ? options.threads
-                   : std::max(1, static_cast<int>(std::thread::hardware_concurrency()))),
+      threads_(resolve_threads(options.threads)),
       connection_(std::move(transport), std::chrono::milliseconds(options.timeout_ms)) {}
 
 Result<std::unique_ptr<Session>> Session::open(std::unique_ptr<Transport> transport,
@@ -96,17 +93,18 @@ std::size_t Session::batch_size() const {
 void Session::choose(Work& work) const {
   const Hit miss = work.query == Query::kAnyHit ? any_hit_answer(false) : Hit{};
   const std::size_t count = work.segments.size();
-  std::vector<std::size_t> place(pieces_of(count) + 1, 0);  // where a piece's begin
-  for_pieces(count, threads_, [&](std::size_t piece, std::size_t first, std::size_t last) {
+  std::vector<std::size_t> place(count / kPiece + 2, 0);  // where a piece's begin
+  parallel_pieces(threads_, count, [&](std::size_t first, std::size_t last) {
+    std::size_t& here = place[first / kPiece + 1];
     for (std::size_t i = first; i < last; ++i) {
       work.hits[i] = miss;
-      if (!work.segments[i].is_miss()) ++place[piece + 1];
+      if (!work.segments[i].is_miss()) ++here;
     }
   });
   std::partial_sum(place.begin(), place.end(), place.begin());
   work.sent.resize(place.back());
-  for_pieces(count, threads_, [&](std::size_t piece, std::size_t first, std::size_t last) {
-    std::size_t at = place[piece];
+  parallel_pieces(threads_, count, [&](std::size_t first, std::size_t last) {
+    std::size_t at = place[first / kPiece];
     for (std::size_t i = first; i < last; ++i) {
       if (!work.segments[i].is_miss()) work.sent[at++] = i;
     }
@@ -157,7 +155,7 @@ Result<Session::Batch> Session::make_batch(const Work& work, std::size_t first) 
   builder.append(head);
   const std::size_t bytes = ray_record_bytes(layout_);
   const std::span<std::byte> records = builder.extend(batch.count * bytes);
-  for_pieces(batch.count, threads_, [&](std::size_t /*piece*/, std::size_t from, std::size_t to) {
+  parallel_pieces(threads_, batch.count, [&](std::size_t from, std::size_t to) {
     for (std::size_t i = from; i < to; ++i) {
       const Segment& segment = work.segments[work.sent[first + i]];
       pack_ray(layout_, segment, work.answers.local_id(segment.ignore), work.query,
@@ -218,15 +216,14 @@ Result<void> Session::take_hits(Work& work, Batch& batch, const Frame& frame) {
   if (head.count != batch.count || head.tag != batch.sequence) return broken("a wrong batch");
   const std::span<const std::byte> records = frame.payload.subspan(kHead);
   std::atomic<const char*> defect{nullptr};
-  for_pieces(batch.count, threads_,
-             [&](std::size_t /*piece*/, std::size_t first, std::size_t last) {
-               const char* found = nullptr;
-               for (std::size_t i = first; i < last && found == nullptr; ++i) {
-                 found = settle(work, work.sent[batch.first + i],
-                                unpack_hit(layout_, records.subspan(i * bytes, bytes)));
-               }
-               if (found != nullptr) defect.store(found);
-             });
+  parallel_pieces(threads_, batch.count, [&](std::size_t first, std::size_t last) {
+    const char* found = nullptr;
+    for (std::size_t i = first; i < last && found == nullptr; ++i) {
+      found = settle(work, work.sent[batch.first + i],
+                     unpack_hit(layout_, records.subspan(i * bytes, bytes)));
+    }
+    if (found != nullptr) defect.store(found);
+  });
   if (const char* found = defect.load()) return broken(found);
   batch.done = true;
   return {};

@@ -2,7 +2,7 @@
 
 #include <atomic>
 
-#include "host/grid/pieces.hpp"
+#include "host/grid/parallel.hpp"
 
 namespace gridrt {
 namespace {
@@ -49,7 +49,7 @@ Accepted<std::vector<BatchRay>> unpack_layout(const protocol::ImageHeader& heade
                                               std::span<const std::byte> records, int threads) {
   std::vector<BatchRay> rays(records.size() / LayoutTag::kRayBytes);
   std::atomic<std::size_t> first_bad{rays.size()};
-  for_pieces(rays.size(), threads, [&](std::size_t /*piece*/, std::size_t first, std::size_t last) {
+  parallel_pieces(threads, rays.size(), [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       const auto bytes =
           records.subspan(i * LayoutTag::kRayBytes).template first<LayoutTag::kRayBytes>();

@@ -4,8 +4,8 @@
 #include <chrono>
 #include <vector>
 
+#include "host/grid/parallel.hpp"
 #include "host/grid/segments.hpp"
-#include "host/render/parallel.hpp"
 
 namespace gridrt {
 namespace {

@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "host/grid/parallel.hpp"
 #include "host/grid/segments.hpp"
-#include "host/render/parallel.hpp"
 #include "host/render/shading.hpp"
 #include "host/render/surface.hpp"
 

@@ -3,7 +3,7 @@
 
 #include "host/driver/image_options.hpp"
 #include "host/driver/ray_records.hpp"
-#include "host/grid/pieces.hpp"
+#include "host/grid/parallel.hpp"
 #include "host/grid/segments.hpp"
 #include "host/image/image.hpp"
 #include "host/image/image_file.hpp"
@@ -101,11 +101,10 @@ class GridRT final : public Contender {
       if (!device_->load(*built_)) throw std::runtime_error("the image does not load again");
     }
     if (part_ == Part::kProgram) {
-      for_pieces(rays_.size(), threads,
-                 [&](std::size_t /*piece*/, std::size_t first, std::size_t last) {
-                   make_segments(lattice_, std::span(rays_).subspan(first, last - first),
-                                 std::span(segments_).subspan(first, last - first));
-                 });
+      parallel_pieces(threads, rays_.size(), [&](std::size_t first, std::size_t last) {
+        make_segments(lattice_, std::span(rays_).subspan(first, last - first),
+                      std::span(segments_).subspan(first, last - first));
+      });
     }
     if (const auto done = device_->trace(segments_, Query::kClosestHit, hits_); !done) {
       throw std::runtime_error(done.error().message);

@@ -109,17 +109,19 @@ class Failures(ProgramTest):
         self.assertTrue(self.gone(family))
 
     def test_a_rank_of_ones_own_job_hangs(self):
-        job, family, ranks = self.under_mpirun()
-        os.kill(max(ranks), signal.SIGSTOP)
-        self.assertTrue(wait_until(lambda: len(ranks_of(job.pid, "gridrt-host")) < 4,
-                                   2 * LIMIT + SLACK))
-        words = self.expect_end(job, ranks)
-        # Open MPI's launcher crashes at times in its own clean-up, when its job has ended.
-        crashed = job.returncode == -signal.SIGSEGV and "PMIx_server_finalize" in words
-        self.assertTrue(crashed or job.returncode == 6, words)
-        self.assertEqual(words.count("gridrt-host: "), 1, words)
-        self.assertIn("silent for 10000 ms", words)
-        self.assertTrue(self.gone(family))
+        for _ in range(3):
+            job, family, ranks = self.under_mpirun()
+            os.kill(max(ranks), signal.SIGSTOP)
+            self.assertTrue(wait_until(lambda: len(ranks_of(job.pid, "gridrt-host")) < 4,
+                                       2 * LIMIT + SLACK))
+            words = self.expect_end(job, ranks)
+            self.assertEqual(words.count("gridrt-host: "), 1, words)
+            self.assertIn("silent for 10000 ms", words)
+            self.assertTrue(self.gone(family))
+            # Open MPI's launcher crashes at times in its own clean-up, when its job has ended.
+            if job.returncode != -signal.SIGSEGV or "PMIx_server_finalize" not in words:
+                break
+        self.assertEqual(job.returncode, 6, words)
 
 
 if __name__ == "__main__":

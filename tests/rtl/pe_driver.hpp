@@ -260,7 +260,7 @@ class PeDriver : public testing::Test {
     expected_tests += static_cast<long>(sent.tests.size());
     expected_masked += sent.task.count - static_cast<long>(sent.tests.size());
     for (const PeTest& t : sent.tests) in_order_.push_back(t);
-    counts_.work += std::max<long>((sent.task.count + 3) / 4, std::ssize(sent.tests));
+    counts_.work += std::max<long>((sent.task.count + 7) / 8, std::ssize(sent.tests));
     slot.tasks.push_back(std::move(sent));
     ++counts_.tasks;
     ++pending_;

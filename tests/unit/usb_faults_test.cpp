@@ -12,6 +12,7 @@
 #include "host/image/image.hpp"
 #include "tests/contract/awkward.hpp"
 #include "tests/unit/usb_board.hpp"
+#include "tests/usb/frame_faults.hpp"
 
 namespace gridrt {
 namespace {
@@ -77,22 +78,10 @@ Schedule make_schedule(std::uint64_t seed) {
       s.faults.overflow = chance(0.3);
       break;
     case 5:
-      s.kind = "lost frames";
-      s.to_device.drop = s.to_host.drop = chance(0.3);
-      break;
     case 6:
-      s.kind = "bad CRCs";
-      s.to_device.flip = s.to_host.flip = chance(0.3);
-      break;
     case 7:
-      s.kind = "cut frames, garbage";
-      s.to_device.truncate = s.to_host.truncate = chance(0.2);
-      s.to_device.garbage = s.to_host.garbage = chance(0.5);
-      break;
     case 8:
-      s.kind = "doubled and reordered frames";
-      s.to_device.duplicate = s.to_host.duplicate = chance(0.5);
-      s.to_device.reorder = s.to_host.reorder = chance(0.3);
+      s.kind = set_frame_faults(static_cast<int>(seed % 16) - 5, chance, s.to_device, s.to_host);
       break;
     case 9:
       s.kind = "unplugged";

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "hal/fault_injector.hpp"
+#include "tests/usb/frame_faults.hpp"
 
 namespace gridrt {
 
@@ -35,22 +36,10 @@ inline GuestSchedule guest_schedule(std::uint64_t number) {
   s.to_device.limit = s.to_host.limit = 1 + random() % 3;
   switch (number % 10) {
     case 0:
-      s.kind = "lost frames";
-      s.to_device.drop = s.to_host.drop = chance(0.3);
-      break;
     case 1:
-      s.kind = "bad CRCs";
-      s.to_device.flip = s.to_host.flip = chance(0.3);
-      break;
     case 2:
-      s.kind = "cut frames, garbage";
-      s.to_device.truncate = s.to_host.truncate = chance(0.2);
-      s.to_device.garbage = s.to_host.garbage = chance(0.5);
-      break;
     case 3:
-      s.kind = "doubled and reordered frames";
-      s.to_device.duplicate = s.to_host.duplicate = chance(0.5);
-      s.to_device.reorder = s.to_host.reorder = chance(0.3);
+      s.kind = set_frame_faults(static_cast<int>(number % 10), chance, s.to_device, s.to_host);
       break;
     case 4:
       s.kind = "stalls";

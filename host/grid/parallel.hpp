@@ -16,20 +16,22 @@ inline int resolve_threads(int threads) {
   return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
+inline constexpr std::size_t kPiece = 1024;  ///< of a range, that a thread takes at a time
+
 /// Calls body(first, last) once for every piece of [0, count), in any order, from up to `threads`
-/// threads. The body must not throw and must write only what belongs to its own piece.
+/// threads; `first` is a multiple of kPiece. The body must not throw and must write only what
+/// belongs to its own piece.
 template <class Body>
 void parallel_pieces(int threads, std::size_t count, const Body& body) {
-  constexpr std::size_t kGrain = 1024;
   std::atomic<std::size_t> next{0};
   const auto work = [&] {
     for (;;) {
-      const std::size_t first = next.fetch_add(kGrain, std::memory_order_relaxed);
+      const std::size_t first = next.fetch_add(kPiece, std::memory_order_relaxed);
       if (first >= count) return;
-      body(first, std::min(count, first + kGrain));
+      body(first, std::min(count, first + kPiece));
     }
   };
-  const std::size_t useful = (count + kGrain - 1) / kGrain;
+  const std::size_t useful = (count + kPiece - 1) / kPiece;
   const std::size_t helpers =
       std::min(useful, static_cast<std::size_t>(resolve_threads(threads))) - (useful > 0 ? 1 : 0);
   std::vector<std::jthread> pool;
