@@ -45,12 +45,32 @@ CellSet cells_at(const std::array<AxisWay, 3>& ways) {
 QuarterMasks triangle_quarters(const TriangleBoxTest& triangle, const VoxelGrid& grid,
                                const glm::ivec3& voxel) {
   const glm::ivec3 lo = voxel * grid.edge;
+  const glm::ivec3 hi = lo + grid.edge;
+  const EighthBox whole = eighth_box(lo, hi, grid.margin);
+  bool inside = true;
+  for (int a = 0; a < 3; ++a) {
+    inside = inside && triangle.low(a) >= whole.centre[a] - whole.half[a] &&
+             triangle.high(a) <= whole.centre[a] + whole.half[a];
+  }
   unsigned masks = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    for (int quarter = 0; quarter < 4; ++quarter) {
-      if (triangle.meets(eighth_slab_box(lo, lo + grid.edge, grid.margin, axis, quarter))) {
-        masks |= 1U << static_cast<unsigned>(4 * axis + quarter);
-      }
+    const auto slab = [&](int quarter) {
+      return eighth_slab_box(lo, hi, grid.margin, axis, quarter);
+    };
+    const auto bounds_meet = [&](int quarter) {
+      const EighthBox box = slab(quarter);
+      return triangle.low(axis) <= box.centre[axis] + box.half[axis] &&
+             triangle.high(axis) >= box.centre[axis] - box.half[axis];
+    };
+    // What is not cut off by the voxel's faces touches what its bounds touch. All others touch an
+    // interval too, whose ends are looked for.
+    const auto touches = [&](int quarter) { return inside || triangle.meets(slab(quarter)); };
+    int first = 0;
+    int last = 3;
+    while (first < last && !(bounds_meet(first) && touches(first))) ++first;
+    while (last > first && !(bounds_meet(last) && touches(last))) --last;
+    for (int quarter = first; quarter <= last; ++quarter) {
+      masks |= 1U << static_cast<unsigned>(4 * axis + quarter);
     }
   }
   return static_cast<QuarterMasks>(masks);

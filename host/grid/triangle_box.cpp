@@ -29,6 +29,10 @@ TriangleBoxTest::TriangleBoxTest(const LatticeTriangle& triangle) {
     edge_[i] = glm::i64vec3{triangle.v[(i + 1) % 3]} - glm::i64vec3{triangle.v[i]};
     for (int a = 0; a < 3; ++a) largest = std::max<std::int64_t>(largest, triangle.v[i][a]);
   }
+  for (int a = 0; a < 3; ++a) {
+    low_[a] = std::min({v_[0][a], v_[1][a], v_[2][a]});
+    high_[a] = std::max({v_[0][a], v_[1][a], v_[2][a]});
+  }
   const glm::i64vec3& a = edge_[0];
   const glm::i64vec3& b = edge_[1];
   normal_ = {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};

@@ -27,6 +27,10 @@ class TriangleBoxTest {
   explicit TriangleBoxTest(const LatticeTriangle& triangle);
   [[nodiscard]] bool meets(const EighthBox& box) const;
 
+  /// The bounds of the triangle on an axis, in eighths of a step.
+  [[nodiscard]] std::int64_t low(int axis) const { return low_[axis]; }
+  [[nodiscard]] std::int64_t high(int axis) const { return high_[axis]; }
+
  private:
   template <class Scalar>
   [[nodiscard]] bool plane_meets(const EighthBox& box) const;
@@ -34,7 +38,9 @@ class TriangleBoxTest {
   std::array<glm::i64vec3, 3> v_{};     ///< eighths of a step
   std::array<glm::i64vec3, 3> edge_{};  ///< lattice steps
   glm::i64vec3 normal_{0};              ///< lattice steps squared
-  bool narrow_ = true;                  ///< 64 bits hold the plane test
+  glm::i64vec3 low_{0};                 ///< bounds, eighths of a step
+  glm::i64vec3 high_{0};
+  bool narrow_ = true;  ///< 64 bits hold the plane test
 };
 
 }  // namespace gridrt

@@ -78,18 +78,21 @@ constexpr std::array<QuarterMasks, 1024> all_codes() {
   return all;
 }
 
-std::uint32_t digit_of(std::uint32_t interval) {
-  for (std::uint32_t digit = 0; digit < kIntervals.size(); ++digit) {
-    if (kIntervals[digit] == interval) return digit;
+/// Digits by mask; what is no interval stands as all of it.
+constexpr std::array<std::uint8_t, 16> kDigits = [] {
+  std::array<std::uint8_t, 16> digits{};
+  digits.fill(static_cast<std::uint8_t>(kIntervals.size() - 1));
+  for (std::size_t digit = 0; digit < kIntervals.size(); ++digit) {
+    digits[kIntervals[digit]] = static_cast<std::uint8_t>(digit);
   }
-  return static_cast<std::uint32_t>(kIntervals.size()) - 1;  // no interval: all of it
-}
+  return digits;
+}();
 
 }  // namespace
 
 std::uint32_t quarter_code(QuarterMasks quarters) {
-  return pack(digit_of(quarters >> 8U & 0xFU), digit_of(quarters >> 4U & 0xFU),
-              digit_of(quarters & 0xFU));
+  return pack(kDigits[quarters >> 8U & 0xFU], kDigits[quarters >> 4U & 0xFU],
+              kDigits[quarters & 0xFU]);
 }
 
 QuarterMasks quarters_of_code(std::uint32_t code) {
