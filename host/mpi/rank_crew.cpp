@@ -139,7 +139,10 @@ std::optional<TraceAnswer> RankCrew::finish(milliseconds patience) {
     tick();
     if (worked) progress_ = listened_;
     if (const auto& health = member_.health(); !health && health_) health_ = health;
-    if (std::optional<TraceAnswer> answer = take_finished()) return answer;
+    if (std::optional<TraceAnswer> answer = take_finished()) {
+      member_.flush();
+      return answer;
+    }
     if (fetched > 0 || worked) {
       patience_.renew();
     } else {
@@ -148,6 +151,7 @@ std::optional<TraceAnswer> RankCrew::finish(milliseconds patience) {
     }
     if (steady_clock::now() >= end) break;
   }
+  member_.flush();
   return std::nullopt;
 }
 

@@ -9,6 +9,10 @@ namespace gridrt {
 namespace {
 
 constexpr unsigned kDetailShift = 32;
+/// Records that are worth a parcel while there is other work; MPI sends as many without asking
+/// first.
+constexpr std::size_t kFullParcel = 120;
+constexpr int kMostRounds = 16;  ///< of work that a record waits for others to fill its parcel
 
 }  // namespace
 
@@ -54,7 +58,7 @@ Accepted<void> RankMember::commit(const CommitOrder& order) {
   team.feedback = order_.feedback;
   team.first_batch = order.first_batch;
   worker_ = make_rank_worker(image_->engine, team, order_.schedule, [this] {
-    deliver();
+    flush();
     if (fetch_) fetch_();
   });
   return {};
@@ -91,9 +95,17 @@ void RankMember::take_records(std::span<const std::byte> content) {
 }
 
 bool RankMember::work() {
-  if (!busy()) return false;
+  if (!busy()) {
+    // A parcel may have settled the last ray: others are to know that their batch is done.
+    flush();
+    return false;
+  }
   const bool worked = worker_->work();
-  deliver();
+  if (worked && ++rounds_ < kMostRounds) {
+    deliver(kFullParcel);
+  } else {
+    flush();
+  }
   measure(worked);
   return worked;
 }
@@ -114,11 +126,17 @@ void RankMember::measure(bool worked) {
   busy_since_ = busy() ? now : 0;
 }
 
-void RankMember::deliver() {
+void RankMember::flush() {
+  rounds_ = 0;
+  deliver(1);
+}
+
+/// Sends outboxes of at least so many records.
+void RankMember::deliver(std::size_t least) {
   if (!worker_) return;
   for (int to = 0; to < postbox_.ranks(); ++to) {
     std::vector<PesRecord>& records = worker_->outbox(static_cast<std::size_t>(to));
-    if (to == postbox_.rank() || records.empty()) continue;
+    if (to == postbox_.rank() || records.size() < least) continue;
     Parcel parcel{ParcelKind::kRecords, to, device_, 0, {}};
     const std::span<const std::byte> raw = std::as_bytes(std::span(records));
     parcel.content.assign(raw.begin(), raw.end());

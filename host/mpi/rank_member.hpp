@@ -52,6 +52,9 @@ class RankMember {
   /// Does a little; false if there was nothing to do.
   bool work();
 
+  /// Sends what work() has left in order to fill a parcel. To be called before a pause.
+  void flush();
+
   /// True while a batch is under way.
   [[nodiscard]] bool busy() const { return worker_ && worker_->busy(); }
   [[nodiscard]] const protocol::ImageHeader* image() const {
@@ -70,7 +73,7 @@ class RankMember {
   void on_exchange(std::function<void()> fetch) { fetch_ = std::move(fetch); }
 
  private:
-  void deliver();
+  void deliver(std::size_t least);
   void measure(bool worked);
 
   Postbox& postbox_;
@@ -81,6 +84,7 @@ class RankMember {
   std::unique_ptr<RankWorker> worker_;
   std::function<void()> fetch_;
   PeCounters counters_;  ///< of what is gone, and of parcels
+  int rounds_ = 0;       ///< of work since everything was delivered
   std::uint64_t busy_since_ = 0;
   std::uint64_t idle_since_ = 0;
   Result<void> health_;

@@ -198,6 +198,36 @@ TEST(Ranks, WithoutFeedbackAnswersAreWrong) {
   }
 }
 
+std::vector<PesRecord> records_in(const Parcel& parcel) {
+  if (parcel.kind != ParcelKind::kRecords) return {};
+  std::vector<PesRecord> records(parcel.content.size() / sizeof(PesRecord));
+  std::memcpy(records.data(), parcel.content.data(), parcel.content.size());
+  return records;
+}
+
+TEST(Ranks, HearOfTheEndOfABatchWhileTheHostIsAway) {
+  const Image image = fixture::make_image("builtin:teapot");
+  const auto segments = fixture::random_segments(image, 40, 17);
+  std::atomic<std::size_t> told{0};
+  Team team(2, [&](const Parcel& parcel, int) {
+    for (const PesRecord& record : records_in(parcel)) {
+      told += record.kind == PesKind::kDone ? 1 : 0;
+    }
+    return true;
+  });
+  const auto device = team.open();
+  ASSERT_TRUE(device->load(image));
+  std::size_t batches = 0;
+  for (const Segment& segment : segments) {
+    Hit hit;
+    ASSERT_TRUE(device->trace({&segment, 1}, Query::kClosestHit, {&hit, 1}));
+    if (!segment.is_miss()) ++batches;
+    // Told by now: this thread is rank 0, and does nothing until the next batch.
+    ASSERT_EQ(told, batches);
+  }
+  EXPECT_GT(batches, segments.size() / 2);
+}
+
 /// The error of a trace in which a filter loses parcels.
 Error lossy(Schedule schedule, const Filter& arrives) {
   const Image image = fixture::make_image("builtin:teapot");
@@ -218,10 +248,7 @@ Error lossy(Schedule schedule, const Filter& arrives) {
 
 /// True for records without which a ray has no answer; interrupts are no such.
 bool is_needed(const Parcel& parcel) {
-  if (parcel.kind != ParcelKind::kRecords) return false;
-  std::vector<PesRecord> records(parcel.content.size() / sizeof(PesRecord));
-  std::memcpy(records.data(), parcel.content.data(), parcel.content.size());
-  return std::ranges::any_of(records, [](const PesRecord& record) {
+  return std::ranges::any_of(records_in(parcel), [](const PesRecord& record) {
     return record.kind == PesKind::kFeedback || record.kind == PesKind::kSettled;
   });
 }
