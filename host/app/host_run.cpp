@@ -108,6 +108,7 @@ Result<void> HostRun::open() {
   }
   device.schedule = options_.schedule;
   device.threads = options_.threads;
+  device.groups = options_.groups;
   device.rays_per_frame = options_.batch;
   device.waves = options_.trace;
   device.flash = options_.flash;

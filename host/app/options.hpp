@@ -39,6 +39,7 @@ struct HostOptions {
   std::string schedule;  ///< empty: the device's own
   bool list_devices = false;
   int threads = 0;            ///< 0: one a core
+  int groups = 1;             ///< of the ranks of mpi
   std::size_t batch = 32768;  ///< rays a frame
   CutOptions cut;
   bool exact = false;

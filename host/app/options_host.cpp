@@ -39,7 +39,7 @@ constexpr const char* kOutputNotes =
     "when it is complete, or not at all; the waves of --trace grow while the simulation runs.\n";
 
 struct HostTexts {
-  std::string threads, batch, size, samples, depth, eye, look, up, fov, explain;
+  std::string threads, groups, batch, size, samples, depth, eye, look, up, fov, explain;
   std::string progress = "auto";
   bool version = false;
   CutTexts cut;
@@ -85,6 +85,8 @@ void add_options(CLI::App& app, HostOptions& options, HostTexts& texts) {
   add(kDevice, "--schedule", options.schedule, "NAME",
       "how software PEs share the work: rays (default), pes (default of mpi) or paper");
   add(kDevice, "--threads", texts.threads, "N", "threads of omp and of the shading (default: all)");
+  add(kDevice, "--groups", texts.groups, "N",
+      "split mpi's ranks into N groups, each with all PEs and a part of the rays (default 1)");
   add(kDevice, "--batch", texts.batch, "N", "rays in a frame to the device (default 32768)");
   app.add_flag("--list-devices", options.list_devices, "list the devices that there are")
       ->group(kDevice);
@@ -127,11 +129,14 @@ Result<void> read_texts(const HostTexts& texts, HostOptions& options) {
   };
   Reader read;
   constexpr std::int64_t kMaxThreads = 4096;
+  constexpr std::int64_t kMaxGroups = 4096;
   constexpr std::int64_t kMaxBatch = 1 << 17;  // wide records of a frame's largest payload
   std::int64_t threads = options.threads;
+  std::int64_t groups = options.groups;
   std::int64_t samples = options.samples;
   std::int64_t depth = options.depth;
   read(texts.threads, threads, integer("--threads", 1, kMaxThreads));
+  read(texts.groups, groups, integer("--groups", 1, kMaxGroups));
   read(texts.batch, options.batch, integer("--batch", 1, kMaxBatch));
   read(texts.samples, samples, integer("--samples", 1, kMaxSamples));
   read(texts.depth, depth, integer("--depth", 0, kMaxDepth));
@@ -152,6 +157,7 @@ Result<void> read_texts(const HostTexts& texts, HostOptions& options) {
   read(texts.progress, options.progress, read_progress);
   if (const std::optional<Error>& error = read.error()) return std::unexpected(*error);
   options.threads = static_cast<int>(threads);
+  options.groups = static_cast<int>(groups);
   options.samples = static_cast<int>(samples);
   options.depth = static_cast<int>(depth);
   auto cut = read_cut_options(texts.cut);

@@ -39,6 +39,8 @@ struct DeviceOptions {
   /// baseline, sse4, avx2 and avx512; empty: the widest that this processor has.
   std::string simd = {};
   int ranks = 0;    ///< of mpi, started alone; 0: four
+  int groups = 1;   ///< of mpi's ranks, each with a whole set of PEs and a part of the rays;
+                    ///< divides their number
   int threads = 0;  ///< of omp, and of the host's own work for any device but seq and mpi; 0: all
                     ///< cores (paper: one for each PE)
   std::size_t rays_per_frame = 32768;  ///< batch size on the link, >= 1

@@ -44,6 +44,7 @@ Result<std::unique_ptr<Device>> open_ranks(const DeviceOptions& options,
   ranks.capabilities = options.capabilities.value_or(software_capabilities());
   ranks.silence = std::chrono::milliseconds(std::max(1, options.timeout_ms));
   ranks.ranks = options.ranks;
+  ranks.groups = options.groups;
   Result<std::unique_ptr<Transport>> transport = connect_ranks(ranks);
   if (!transport) return std::unexpected(std::move(transport.error()));
   return open_session(std::move(*transport), options);
@@ -148,6 +149,12 @@ Result<std::unique_ptr<Device>> open_device(const DeviceOptions& options) {
   if (chosen.threads < 0) {
     return fail(ErrorKind::kUsage, fmt::format("{} threads asked for", chosen.threads),
                 "use 0 for all cores, or a positive number");
+  }
+  if (chosen.name != "mpi" && chosen.groups != 1) {
+    return fail(
+        ErrorKind::kUsage,
+        fmt::format("device '{}' has no ranks to split into {} groups", chosen.name, chosen.groups),
+        "use --device mpi, or leave --groups out");
   }
   if (is_sim(chosen.name) || is_usb(chosen.name)) {
     if (!chosen.schedule.empty()) {

@@ -142,9 +142,9 @@ Result<std::unique_ptr<Transport>> start_job(const RankOptions& options) {
 std::string encode_rank_options(const RankOptions& options) {
   std::array<std::byte, protocol::CapabilitiesReport::kBytes> report{};
   protocol::store(options.capabilities, report);
-  std::string text = fmt::format("{},{},{},{},", static_cast<int>(options.schedule.schedule),
+  std::string text = fmt::format("{},{},{},{},{},", static_cast<int>(options.schedule.schedule),
                                  int{options.schedule.interrupt}, int{options.schedule.feedback},
-                                 options.silence.count());
+                                 options.silence.count(), options.groups);
   for (const std::byte b : report) text += fmt::format("{:02x}", static_cast<unsigned>(b));
   return text;
 }
@@ -165,6 +165,7 @@ Result<RankOptions> decode_rank_options(const std::string& text) {
   options.schedule.interrupt = number() != 0;
   options.schedule.feedback = number() != 0;
   options.silence = milliseconds(number());
+  options.groups = number();
   std::array<std::byte, protocol::CapabilitiesReport::kBytes> report{};
   if (!good || static_cast<std::size_t>(end - at) != 2 * report.size()) {
     return fail(ErrorKind::kUsage, "gridrt-rank is started by the device 'mpi', not by hand");

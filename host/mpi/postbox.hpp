@@ -23,7 +23,8 @@ enum class ParcelKind : std::uint32_t {
   kVerdict,  ///< number: ErrorCode (0: accepted) | detail << 32
   kBatch,    ///< number: of the batch; ray records
   kRecords,  ///< PesRecord array
-  kRefused,  ///< number: of the batch that this rank cannot work on
+  kAnswer,   ///< number: of a batch; hit records, of a group that rank 0 is not in
+  kRefused,  ///< number: of the batch that this rank cannot work on; why, as kVerdict's number
   kBeat,     ///< number: 1 if there was work since the one before
   kCount,    ///< asks for counters; replied by kCounts
   kCounts,   ///< PeCounters' fields

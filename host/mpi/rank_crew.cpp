@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include "hal/record_sizes.hpp"
-#include "host/pe/ray_batch.hpp"
 
 namespace gridrt {
 namespace {
@@ -31,24 +30,29 @@ std::span<const std::byte> bytes_of(const T& value) {
 }
 
 OpenOrder make_order(const ScheduleOptions& schedule, const protocol::CapabilitiesReport& limits,
-                     milliseconds silence) {
+                     milliseconds silence, int groups) {
   const auto limit = static_cast<std::uint32_t>(silence.count());
-  return {schedule.schedule, schedule.interrupt, schedule.feedback,
-          std::max(limit / kBeatsPerLimit, 1U), limits};
+  return {schedule.schedule,
+          schedule.interrupt,
+          schedule.feedback,
+          std::max(limit / kBeatsPerLimit, 1U),
+          groups,
+          limits};
 }
 
 }  // namespace
 
 RankCrew::RankCrew(std::unique_ptr<Postbox> postbox, int device, const ScheduleOptions& schedule,
-                   const protocol::CapabilitiesReport& limits, milliseconds silence)
+                   const protocol::CapabilitiesReport& limits, milliseconds silence, int groups)
     : postbox_(std::move(postbox)),
       device_(device),
       ranks_(postbox_->ranks()),
+      groups_{ranks_, groups},
       silence_(silence),
-      member_(*postbox_, device, make_order(schedule, limits, silence)),
+      member_(*postbox_, device, make_order(schedule, limits, silence, groups)),
       last_tick_(steady_clock::now()),
       heard_(static_cast<std::size_t>(ranks_)) {
-  const OpenOrder order = make_order(schedule, limits, silence);
+  const OpenOrder order = make_order(schedule, limits, silence, groups);
   send_all(ParcelKind::kOpen, 0, bytes_of(order));
   member_.on_exchange([this] {
     Result<std::optional<Parcel>> parcel = postbox_->receive(device_);
@@ -93,10 +97,17 @@ Accepted<void> RankCrew::load(const protocol::LoadHead& head, std::span<const st
   protocol::store(head, raw);
   if (begins_image(head)) ready_ = false;
   if (!is_shared(head.kind)) {
-    const int owner = head.pe % ranks_;
-    if (owner == 0) return member_.load(head, bytes);
-    send(owner, ParcelKind::kLoad, 0, raw, bytes);
-    return await_replies(1);
+    int others = 0;
+    for (int g = 0; g < groups_.groups; ++g) {
+      const int owner = groups_.owner(g, head.pe);
+      if (owner == 0) continue;
+      send(owner, ParcelKind::kLoad, 0, raw, bytes);
+      ++others;
+    }
+    const bool is_own = groups_.owner(0, head.pe) == 0;
+    const Accepted<void> own = is_own ? member_.load(head, bytes) : Accepted<void>{};
+    const Accepted<void> rest = await_replies(others);
+    return own ? rest : own;
   }
   for (int to = 1; to < ranks_; ++to) send(to, ParcelKind::kLoad, 0, raw, bytes);
   const Accepted<void> own = member_.load(head, bytes);
@@ -120,26 +131,47 @@ protocol::Layout RankCrew::layout() const {
 }
 
 Accepted<void> RankCrew::start(const TraceOrder& order) {
-  if (under_way_.empty()) {
-    tick();
-    std::ranges::fill(heard_, listened_);
-    progress_ = listened_;
+  tick();
+  if (orders_.empty()) progress_ = listened_;
+  const std::vector<OrderPart> parts = split_order(order.head.count, groups_.groups);
+  const std::size_t ray_bytes = ray_record_bytes(layout());
+  const auto records = [&](const OrderPart& part) {
+    return order.records.subspan(part.first * ray_bytes, part.count * ray_bytes);
+  };
+  // The own part first: what is refused at once is not begun.
+  if (Accepted<void> begun = member_.add_batch(next_batch_, records(parts[0])); !begun) {
+    return begun;
   }
-  if (Accepted<void> begun = member_.add_batch(next_batch_, order.records); !begun) return begun;
-  send_all(ParcelKind::kBatch, next_batch_, order.records);
-  under_way_[next_batch_++] = {order.sequence, order.head};
+  orders_.begin(order, parts.size(), hit_record_bytes(layout()));
+  for (const OrderPart& part : parts) {
+    if (!orders_.expects(part.group)) listen_to(part.group);
+    const int first = groups_.first(part.group);
+    for (int to = std::max(first, 1); to < first + groups_.size(); ++to) {
+      send(to, ParcelKind::kBatch, next_batch_, records(part));
+    }
+    orders_.add(next_batch_++, part);
+  }
   return {};
+}
+
+/// Its ranks had nothing to say and have now.
+void RankCrew::listen_to(int group) {
+  const auto first = heard_.begin() + groups_.first(group);
+  std::fill(first, first + groups_.size(), listened_);
 }
 
 std::optional<TraceAnswer> RankCrew::finish(milliseconds patience) {
   const auto end = steady_clock::now() + patience;
-  while (health_ && !under_way_.empty()) {
+  while (health_ && !orders_.empty()) {
     const std::size_t fetched = fetch();
     const bool worked = member_.work();
     tick();
     if (worked) progress_ = listened_;
     if (const auto& health = member_.health(); !health && health_) health_ = health;
-    if (std::optional<TraceAnswer> answer = take_finished()) {
+    while (const std::optional<RankMember::Answer> own = member_.take_answer()) {
+      take_answer(own->batch, own->hits);
+    }
+    if (std::optional<TraceAnswer> answer = orders_.take()) {
       member_.flush();
       return answer;
     }
@@ -155,26 +187,9 @@ std::optional<TraceAnswer> RankCrew::finish(milliseconds patience) {
   return std::nullopt;
 }
 
-std::optional<TraceAnswer> RankCrew::take_finished() {
-  if (!refused_.empty()) {
-    TraceAnswer answer = std::move(refused_.front());
-    refused_.pop_front();
-    return answer;
-  }
-  const std::optional<PesWorker::Finished> batch = member_.take_finished();
-  if (!batch) return std::nullopt;
-  const auto order = under_way_.find(batch->batch);
-  if (order == under_way_.end()) return std::nullopt;  // refused by a rank
-  const auto layout = static_cast<protocol::Layout>(member_.image()->layout);
-  TraceAnswer answer{order->second.sequence, order->second.head, {}, {}};
-  answer.hits.resize(batch->rays.size() * hit_record_bytes(layout));
-  for (std::size_t i = 0; i < batch->rays.size(); ++i) {
-    const HitKey& key = batch->answers[i];
-    pack_answer(layout, batch->rays[i], key.id == kNoTriangle ? PeAnswer{} : PeAnswer{key}, i,
-                answer.hits);
-  }
-  under_way_.erase(order);
-  return answer;
+void RankCrew::take_answer(std::uint32_t batch, std::span<const std::byte> hits) {
+  if (orders_.answer(batch, hits)) return;
+  give_up("a rank answers another number of rays than it has got", "the ranks' programs differ");
 }
 
 PeCounters RankCrew::counters() {
@@ -188,8 +203,7 @@ PeCounters RankCrew::counters() {
 
 void RankCrew::reset() {
   ready_ = false;
-  under_way_.clear();
-  refused_.clear();
+  orders_.clear();
   member_.reset();
   send_all(ParcelKind::kReset, 0, {});
   // A rank that does not answer shows in health_.
@@ -241,13 +255,14 @@ void RankCrew::take(Parcel& parcel) {
     case ParcelKind::kGone:
       ++replies_;
       break;
+    case ParcelKind::kAnswer:
+      take_answer(static_cast<std::uint32_t>(parcel.number), parcel.content);
+      break;
     case ParcelKind::kRefused: {
-      const auto order = under_way_.find(static_cast<std::uint32_t>(parcel.number));
-      if (order == under_way_.end()) break;
-      const Refusal refusal{protocol::ErrorCode::kNotReady,
-                            static_cast<std::uint32_t>(parcel.peer)};
-      refused_.push_back({order->second.sequence, order->second.head, {}, refusal});
-      under_way_.erase(order);
+      std::uint64_t why = 0;
+      std::memcpy(&why, parcel.content.data(), std::min(sizeof(why), parcel.content.size()));
+      const Accepted<void> verdict = unpack_verdict(why);
+      if (!verdict) orders_.refuse(static_cast<std::uint32_t>(parcel.number), verdict.error());
       break;
     }
     default:
@@ -284,6 +299,7 @@ void RankCrew::tick() {
 
 void RankCrew::check_silence() {
   for (int r = 1; r < ranks_; ++r) {
+    if (!orders_.expects(groups_.group_of(r))) continue;
     if (listened_ - heard_[static_cast<std::size_t>(r)] <= silence_) continue;
     return give_up(fmt::format("rank {} has been silent for {} ms", r, silence_.count()),
                    "it hangs or is gone");
@@ -291,7 +307,7 @@ void RankCrew::check_silence() {
   if (listened_ - progress_ <= silence_) return;
   give_up(fmt::format("{} batches of rays have no answer, and for {} ms no rank has had work: a "
                       "message between ranks is lost",
-                      under_way_.size(), silence_.count()),
+                      orders_.size(), silence_.count()),
           "check the network between the ranks");
 }
 

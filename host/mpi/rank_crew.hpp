@@ -5,13 +5,14 @@
 #include <chrono>
 #include <cstdint>
 #include <deque>
-#include <map>
 #include <memory>
 #include <string>
 
 #include "host/mpi/patience.hpp"
 #include "host/mpi/postbox.hpp"
+#include "host/mpi/rank_groups.hpp"
 #include "host/mpi/rank_member.hpp"
+#include "host/mpi/split_orders.hpp"
 #include "host/pe/crew.hpp"
 
 namespace gridrt {
@@ -19,9 +20,11 @@ namespace gridrt {
 class RankCrew final : public Crew {
  public:
   /// Opens the device numbered `device` (> 0, unlike any before) on all ranks. `silence`: so long
-  /// may a rank say nothing while work is under way, and so long may nothing go on.
+  /// may a rank say nothing while work is under way, and so long may nothing go on. `groups` of
+  /// ranks, a divisor of their number, get a part of each order.
   RankCrew(std::unique_ptr<Postbox> postbox, int device, const ScheduleOptions& schedule,
-           const protocol::CapabilitiesReport& limits, std::chrono::milliseconds silence);
+           const protocol::CapabilitiesReport& limits, std::chrono::milliseconds silence,
+           int groups = 1);
   ~RankCrew() override;
 
   Accepted<void> load(const protocol::LoadHead& head, std::span<const std::byte> bytes) override;
@@ -34,11 +37,6 @@ class RankCrew final : public Crew {
   [[nodiscard]] Result<void> health() const override { return health_; }
 
  private:
-  struct UnderWay {
-    std::uint32_t sequence = 0;
-    protocol::TraceHead head;
-  };
-
   void send(int to, ParcelKind kind, std::uint64_t number, std::span<const std::byte> head,
             std::span<const std::byte> bytes = {});
   void send_all(ParcelKind kind, std::uint64_t number, std::span<const std::byte> content);
@@ -48,17 +46,19 @@ class RankCrew final : public Crew {
   void tick();
   void check_silence();
   void give_up(std::string message, std::string advice);
-  std::optional<TraceAnswer> take_finished();
+  void listen_to(int group);
+  Accepted<void> start_part(std::span<const std::byte> records, const OrderPart& part);
+  void take_answer(std::uint32_t batch, std::span<const std::byte> hits);
 
   std::unique_ptr<Postbox> postbox_;
   int device_;
   int ranks_;
+  RankGroups groups_;
   std::chrono::milliseconds silence_;
   RankMember member_;
   bool ready_ = false;
   std::uint32_t next_batch_ = 0;
-  std::map<std::uint32_t, UnderWay> under_way_;  ///< by number of the batch
-  std::deque<TraceAnswer> refused_;
+  SplitOrders orders_;
   std::deque<Parcel> deferred_;  ///< fetched in the midst of work
   Patience patience_;
 

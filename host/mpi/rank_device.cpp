@@ -20,7 +20,7 @@ std::unique_ptr<SoftwareDevice> make_rank_device(const RankOptions& options) {
   device.capabilities = options.capabilities;
   return std::make_unique<SoftwareDevice>(
       device, std::make_unique<RankCrew>(make_mpi_postbox(), new_device_number(), options.schedule,
-                                         options.capabilities, options.silence));
+                                         options.capabilities, options.silence, options.groups));
 }
 
 }  // namespace gridrt

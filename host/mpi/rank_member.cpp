@@ -3,6 +3,7 @@
 #include <cstring>
 #include <utility>
 
+#include "hal/record_sizes.hpp"
 #include "host/pe/ray_batch.hpp"
 
 namespace gridrt {
@@ -29,7 +30,11 @@ Accepted<void> unpack_verdict(std::uint64_t number) {
 }
 
 RankMember::RankMember(Postbox& postbox, int device, const OpenOrder& order)
-    : postbox_(postbox), device_(device), order_(order), store_(order.limits) {}
+    : postbox_(postbox),
+      device_(device),
+      order_(order),
+      groups_{postbox.ranks(), order.groups},
+      store_(order.limits) {}
 
 Accepted<void> RankMember::load(const protocol::LoadHead& head, std::span<const std::byte> bytes) {
   Accepted<void> stored = store_.add(head, bytes);
@@ -42,18 +47,18 @@ Accepted<void> RankMember::load(const protocol::LoadHead& head, std::span<const 
 }
 
 Accepted<void> RankMember::commit(const CommitOrder& order) {
-  const auto ranks = static_cast<std::uint32_t>(postbox_.ranks());
-  const auto rank = static_cast<std::uint32_t>(postbox_.rank());
+  const auto members = static_cast<std::uint32_t>(groups_.size());
+  const auto member = static_cast<std::uint32_t>(groups_.member(postbox_.rank()));
   std::uint64_t own = 0;
-  for (std::uint32_t p = rank; p < 64; p += ranks) own |= std::uint64_t{1} << p;
+  for (std::uint32_t p = member; p < 64; p += members) own |= std::uint64_t{1} << p;
   Accepted<std::unique_ptr<CommittedImage>> image = store_.commit(order.pe_mask & own);
   if (!image) return std::unexpected(image.error());
   counters_ = counters();
   worker_.reset();
   image_ = std::move(*image);
   PesTeam team;
-  team.worker = rank;
-  team.workers = ranks;
+  team.worker = member;
+  team.workers = members;
   team.interrupt = order_.interrupt;
   team.feedback = order_.feedback;
   team.first_batch = order.first_batch;
@@ -134,8 +139,9 @@ void RankMember::flush() {
 /// Sends outboxes of at least so many records.
 void RankMember::deliver(std::size_t least) {
   if (!worker_) return;
-  for (int to = 0; to < postbox_.ranks(); ++to) {
-    std::vector<PesRecord>& records = worker_->outbox(static_cast<std::size_t>(to));
+  const int first = groups_.first(groups_.group_of(postbox_.rank()));
+  for (int to = first; to < first + groups_.size(); ++to) {
+    std::vector<PesRecord>& records = worker_->outbox(static_cast<std::size_t>(to - first));
     if (to == postbox_.rank() || records.size() < least) continue;
     Parcel parcel{ParcelKind::kRecords, to, device_, 0, {}};
     const std::span<const std::byte> raw = std::as_bytes(std::span(records));
@@ -154,9 +160,19 @@ void RankMember::send(Parcel parcel) {
   if (!sent && health_) health_ = std::move(sent);
 }
 
-std::optional<PesWorker::Finished> RankMember::take_finished() {
+std::optional<RankMember::Answer> RankMember::take_answer() {
   if (!worker_) return std::nullopt;
-  return worker_->take_finished();
+  const std::optional<PesWorker::Finished> batch = worker_->take_finished();
+  if (!batch) return std::nullopt;
+  const auto layout = static_cast<protocol::Layout>(image_->header.layout);
+  Answer answer{batch->batch, {}};
+  answer.hits.resize(batch->rays.size() * hit_record_bytes(layout));
+  for (std::size_t i = 0; i < batch->rays.size(); ++i) {
+    const HitKey& key = batch->answers[i];
+    pack_answer(layout, batch->rays[i], key.id == kNoTriangle ? PeAnswer{} : PeAnswer{key}, i,
+                answer.hits);
+  }
+  return answer;
 }
 
 PeCounters RankMember::counters() {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "host/mpi/postbox.hpp"
+#include "host/mpi/rank_groups.hpp"
 #include "host/mpi/rank_worker.hpp"
 #include "host/pe/image_store.hpp"
 
@@ -20,6 +21,7 @@ struct OpenOrder {
   bool interrupt = true;
   bool feedback = true;
   std::uint32_t beat_ms = 1000;  ///< between two beats while batches are under way
+  int groups = 1;                ///< of ranks, see RankGroups
   protocol::CapabilitiesReport limits;
 };
 
@@ -36,7 +38,8 @@ Accepted<void> unpack_verdict(std::uint64_t number);
 
 class RankMember {
  public:
-  /// Rank r of R owns the PEs p of an image with p mod R = r. `postbox` outlives the member.
+  /// Member m of a group of M owns the PEs p of an image with p mod M = m. `postbox` outlives the
+  /// member.
   RankMember(Postbox& postbox, int device, const OpenOrder& order);
 
   Accepted<void> load(const protocol::LoadHead& head, std::span<const std::byte> bytes);
@@ -60,7 +63,14 @@ class RankMember {
   [[nodiscard]] const protocol::ImageHeader* image() const {
     return image_ ? &image_->header : nullptr;
   }
-  std::optional<PesWorker::Finished> take_finished();
+
+  /// A batch's hit records.
+  struct Answer {
+    std::uint32_t batch = 0;
+    std::vector<std::byte> hits;
+  };
+  /// The next answered batch of a group whose first member this is, once.
+  std::optional<Answer> take_answer();
   PeCounters counters();
 
   /// Sends and counts a parcel that belongs to the work on rays.
@@ -79,6 +89,7 @@ class RankMember {
   Postbox& postbox_;
   int device_;
   OpenOrder order_;
+  RankGroups groups_;
   ImageStore store_;
   std::unique_ptr<CommittedImage> image_;
   std::unique_ptr<RankWorker> worker_;

@@ -44,6 +44,9 @@ Result<RankServer::Step> RankServer::step() {
   for (auto& [number, served] : devices_) {
     const bool worked = served.member->work();
     if (worked) step.idle = false;
+    while (std::optional<RankMember::Answer> answer = served.member->take_answer()) {
+      served.member->send({ParcelKind::kAnswer, 0, number, answer->batch, std::move(answer->hits)});
+    }
     beat(number, served, worked);
     if (const auto& health = served.member->health(); !health) {
       return std::unexpected(health.error());
@@ -135,7 +138,9 @@ Result<void> RankServer::handle(Served& served, Parcel& parcel) {
       const Accepted<void> begun =
           member.add_batch(static_cast<std::uint32_t>(parcel.number), parcel.content);
       if (begun) return {};
-      return reply(ParcelKind::kRefused, parcel.number, {});
+      const std::uint64_t why = pack_verdict(begun);
+      const auto raw = std::as_bytes(std::span(&why, 1));
+      return reply(ParcelKind::kRefused, parcel.number, {raw.begin(), raw.end()});
     }
     case ParcelKind::kRecords:
       member.take_records(parcel.content);

@@ -84,6 +84,35 @@ class Answers(ProgramTest):
             with self.subTest(ranks=ranks, pes=pes):
                 self.under_mpirun(ranks, "--device", "mpi", "--pes", pes)
 
+    def test_groups_of_ranks_share_the_rays(self):
+        for ranks, groups, pes, schedule in ((2, 2, 4, "pes"), (4, 2, 3, "pes"), (4, 4, 4, "pes"),
+                                             (6, 3, 4, "pes"), (4, 2, 4, "paper")):
+            with self.subTest(ranks=ranks, groups=groups, schedule=schedule):
+                stats = self.under_mpirun(ranks, "--device", "mpi", "--groups", groups, "--pes",
+                                          pes, "--schedule", schedule, "--batch", 1000)
+                # Nothing travels along a traversal list that one rank holds all of.
+                self.assertEqual(stats["exchange"]["feedbacks_sent"] > 0,
+                                 ranks > groups and schedule == "pes")
+        self.under_mpirun(2, "--groups", 2, tcp=True)
+        self.host(*SCENE, "--device", "mpi", "--groups", 2, "--hits", "a.npy")  # of its own four
+        self.assertEqual(self.read("a.npy"), self.expected)
+
+    def test_a_number_of_groups_that_cannot_be(self):
+        def error(ranks, *words):
+            done = subprocess.run(
+                [*mpirun(ranks), BIN / "gridrt-host", *SCENE, *words, "--hits", "a.npy"],
+                cwd=self.folder, check=False, capture_output=True, text=True, timeout=60)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertFalse((self.folder / "a.npy").exists())
+            return done.stderr
+        self.assertIn("3 ranks cannot be split into 2 groups", error(3, "--groups", "2"))
+        self.assertIn("2 ranks cannot be split into 4 groups", error(2, "--groups", "4"))
+        self.assertIn("--groups", error(2, "--groups", "0"))
+        done = self.host(*SCENE, "--device", "mpi", "--groups", "3", "--hits", "a.npy", code=2)
+        self.assertIn("4 ranks cannot be split into 3 groups", done.stderr)
+        done = self.host(*SCENE, "--device", "omp", "--groups", "2", "--hits", "a.npy", code=2)
+        self.assertIn("'omp' has no ranks", done.stderr)
+
     def test_over_tcp(self):
         for schedule in ("pes", "paper"):
             stats = self.under_mpirun(2, "--schedule", schedule, tcp=True)

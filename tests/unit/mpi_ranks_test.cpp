@@ -5,12 +5,14 @@
 #include <cstring>
 #include <deque>
 #include <functional>
+#include <map>
 #include <mutex>
 #include <thread>
 
 #include <gtest/gtest.h>
 
 #include "hal/loopback.hpp"
+#include "hal/record_sizes.hpp"
 #include "host/driver/session.hpp"
 #include "host/mpi/rank_crew.hpp"
 #include "host/mpi/rank_server.hpp"
@@ -87,10 +89,10 @@ class Team {
     }
   }
 
-  std::unique_ptr<Session> open(int number = 1) {
+  std::unique_ptr<Session> open(int number = 1, int groups = 1) {
     auto crew =
         std::make_unique<RankCrew>(std::make_unique<OfficeBox>(office_, 0), number, schedule_,
-                                   software_capabilities(), std::chrono::milliseconds(400));
+                                   software_capabilities(), std::chrono::milliseconds(400), groups);
     SoftwareDeviceOptions device{.name = "mpi", .schedule = schedule_};
     return Session::open(std::make_unique<LoopbackTransport>(
                              std::make_unique<SoftwareDevice>(device, std::move(crew))),
@@ -228,13 +230,55 @@ TEST(Ranks, HearOfTheEndOfABatchWhileTheHostIsAway) {
   EXPECT_GT(batches, segments.size() / 2);
 }
 
+TEST(Ranks, InGroupsEachWithAllPesAndAPartOfTheRays) {
+  ImageOptions cut;
+  cut.pes = 3;
+  const Image image = fixture::make_image("builtin:teapot", cut);
+  const auto segments = fixture::random_segments(image, 500, 19);
+  for (const Schedule schedule : {Schedule::kPes, Schedule::kPaper}) {
+    for (const auto& [ranks, groups] : {std::pair(2, 2), {4, 2}, {6, 3}}) {
+      const int size = ranks / groups;
+      std::atomic<int> strays{0};  // records between groups
+      std::mutex mutex;
+      std::map<int, std::size_t> bytes;  // of rays, to each rank
+      Team team(
+          ranks,
+          [&](const Parcel& parcel, int from) {
+            const bool stray = from / size != parcel.peer / size;
+            strays += stray && parcel.kind == ParcelKind::kRecords ? 1 : 0;
+            const std::scoped_lock lock(mutex);
+            if (parcel.kind == ParcelKind::kBatch) bytes[parcel.peer] += parcel.content.size();
+            return true;
+          },
+          schedule);
+      const auto device = team.open(1, groups);
+      ASSERT_TRUE(device->load(image));
+      for (const std::size_t count : {std::size_t{1}, segments.size()}) {
+        const auto some = std::span(segments).first(count);
+        for (const Query query : {Query::kClosestHit, Query::kAnyHit}) {
+          std::vector<Hit> hits(count);
+          ASSERT_TRUE(device->trace(some, query, hits));
+          EXPECT_EQ(differences(hits, expected_hits(image, some, query)), 0U);
+        }
+      }
+      EXPECT_EQ(strays, 0);
+      const DeviceCounters counters = device->counters().value();
+      EXPECT_EQ(counters.exchange.barriers, schedule == Schedule::kPaper ? counters.rays : 0);
+      const std::size_t all = counters.rays * ray_record_bytes(protocol::Layout::kWide);
+      const std::scoped_lock lock(mutex);
+      EXPECT_NEAR(static_cast<double>(bytes[ranks - 1] * groups), static_cast<double>(all),
+                  0.02 * static_cast<double>(all));
+    }
+  }
+}
+
 /// The error of a trace in which a filter loses parcels.
-Error lossy(Schedule schedule, const Filter& arrives) {
+Error lossy(Schedule schedule, const Filter& arrives, int ranks = 3, int groups = 1) {
   const Image image = fixture::make_image("builtin:teapot");
   const auto segments = fixture::random_segments(image, 2000, 5);
   std::vector<Hit> hits(segments.size());
-  Team team(3, arrives, schedule);
-  const auto device = team.open();
+  Team team(ranks, arrives, schedule);
+  const auto device = team.open(1, groups);
   if (auto loaded = device->load(image); !loaded) return loaded.error();
   const auto start = std::chrono::steady_clock::now();
   const auto traced = device->trace(segments, Query::kClosestHit, hits);
@@ -262,6 +306,14 @@ TEST(Ranks, ALostMessageIsAnError) {
     EXPECT_NE(error.message.find("a message between ranks is lost"), std::string::npos)
         << error.message;
   }
+}
+
+TEST(Ranks, AnAnswerOfAGroupThatIsLostIsAnError) {
+  const Error error = lossy(
+      Schedule::kPes, [](const Parcel& parcel, int) { return parcel.kind != ParcelKind::kAnswer; },
+      4, 2);
+  EXPECT_EQ(error.kind, ErrorKind::kDevice);
+  EXPECT_NE(error.message.find("silent"), std::string::npos) << error.message;
 }
 
 TEST(Ranks, ASilentRankIsAnError) {
