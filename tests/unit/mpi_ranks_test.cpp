@@ -89,10 +89,12 @@ class Team {
     }
   }
 
-  std::unique_ptr<Session> open(int number = 1, int groups = 1) {
-    auto crew =
-        std::make_unique<RankCrew>(std::make_unique<OfficeBox>(office_, 0), number, schedule_,
-                                   software_capabilities(), std::chrono::milliseconds(400), groups);
+  /// `silence`: a busy machine may keep a rank waiting for long; those that lose messages have
+  /// less.
+  std::unique_ptr<Session> open(int number = 1, int groups = 1,
+                                std::chrono::milliseconds silence = std::chrono::seconds(10)) {
+    auto crew = std::make_unique<RankCrew>(std::make_unique<OfficeBox>(office_, 0), number,
+                                           schedule_, software_capabilities(), silence, groups);
     SoftwareDeviceOptions device{.name = "mpi", .schedule = schedule_};
     return Session::open(std::make_unique<LoopbackTransport>(
                              std::make_unique<SoftwareDevice>(device, std::move(crew))),
@@ -278,7 +280,7 @@ Error lossy(Schedule schedule, const Filter& arrives, int ranks = 3, int groups 
   const auto segments = fixture::random_segments(image, 2000, 5);
   std::vector<Hit> hits(segments.size());
   Team team(ranks, arrives, schedule);
-  const auto device = team.open(1, groups);
+  const auto device = team.open(1, groups, std::chrono::milliseconds(400));
   if (auto loaded = device->load(image); !loaded) return loaded.error();
   const auto start = std::chrono::steady_clock::now();
   const auto traced = device->trace(segments, Query::kClosestHit, hits);
