@@ -14,7 +14,7 @@ module gridrt_board #(
     parameter int unsigned REFS = 8192,
     parameter int unsigned TRIS = 4096,
     parameter int unsigned VERTS = 2560,
-    parameter int unsigned DIVIDERS = 3,
+    parameter int unsigned DIVIDERS = 2,
     parameter bit MASK = 1'b1,
     parameter bit CANCEL = 1'b1,
     parameter bit FEEDBACK = 1'b1,

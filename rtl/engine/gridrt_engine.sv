@@ -11,14 +11,14 @@ module gridrt_engine #(
     parameter int unsigned TUS = 4,  // traversal units, 1 to 4
     parameter int unsigned SLOTS = 64,  // rays in traversal, a multiple of TUS, at most 64
     parameter int unsigned ROB = 256,  // answers that wait for their turn, a power of two
-    parameter int unsigned QUEUE = 16,  // tasks that wait in a PE
+    parameter int unsigned QUEUE = 16,  // tasks that wait between an expander and a PE
     parameter int unsigned AHEAD = 2,  // tasks of a ray in advance: no step with so many pending
     parameter int unsigned BLOCKS = 4096,  // memory sizes, records; the last three for each PE
     parameter int unsigned CELLS = 6144,
     parameter int unsigned REFS = 8192,
     parameter int unsigned TRIS = 4096,
     parameter int unsigned VERTS = 2560,
-    parameter int unsigned DIVIDERS = 3,  // of a PE
+    parameter int unsigned DIVIDERS = 2,  // of a PE
     parameter bit MASK = 1'b1,  // 0: quarters are ignored
     parameter bit CANCEL = 1'b1,  // 0: hits cancel nothing
     parameter bit FEEDBACK = 1'b1  // 0: the first hit is the answer (a wrong machine, for a test)
@@ -282,7 +282,8 @@ module gridrt_engine #(
   );
   gridrt_dispatch #(
       .EXPS(EXPS),
-      .PES (PES)
+      .PES(PES),
+      .DEPTH(QUEUE)
   ) u_dispatch (
       .clk_i,
       .rst_ni,
@@ -303,7 +304,6 @@ module gridrt_engine #(
       .B(B),
       .PES(PES),
       .SLOTS(SLOTS),
-      .QUEUE(QUEUE),
       .REFS(REFS),
       .TRIS(TRIS),
       .VERTS(VERTS),

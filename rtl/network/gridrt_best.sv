@@ -100,13 +100,27 @@ module gridrt_best #(
   logic unused_slot;
   assign unused_slot = &{1'b0, read_slot_i};  // its upper bits, where there are few slots
 
+  logic [SLOTS-1:0] enters, compared;
+  gridrt_onehot #(
+      .LINES(SLOTS)
+  ) u_enters (
+      .valid_i(alloc_i.valid),
+      .index_i(INDEX_W'(alloc_i.slot)),
+      .line_o (enters)
+  );
+  gridrt_onehot #(
+      .LINES(SLOTS)
+  ) u_compared (
+      .valid_i(hit_valid_o),
+      .index_i(INDEX_W'(hit_o.slot)),
+      .line_o (compared)
+  );
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
       has_hit <= '0;
       interrupt_o <= '0;
     end else begin
-      if (alloc_i.valid) has_hit[INDEX_W'(alloc_i.slot)] <= 1'b0;
-      if (hit_valid_o) has_hit[INDEX_W'(hit_o.slot)] <= 1'b1;
+      has_hit <= (has_hit & ~enters) | compared;
       interrupt_o.valid <= lower;
       if (lower) begin
         interrupt_o.slot  <= hit_o.slot;

@@ -141,6 +141,37 @@ module gridrt_feedback #(
       .many_o(many)
   );
 
+  // By slot: a ray enters, a hit is compared, a traversal ends.
+  logic [SLOTS-1:0] enters, compared, ends_here;
+  logic [TUS-1:0][SLOTS-1:0] traversed;
+  gridrt_onehot #(
+      .LINES(SLOTS)
+  ) u_enters (
+      .valid_i(take),
+      .index_i(INDEX_W'(free_slot)),
+      .line_o (enters)
+  );
+  gridrt_onehot #(
+      .LINES(SLOTS)
+  ) u_compared (
+      .valid_i(hit_valid_o),
+      .index_i(INDEX_W'(hit_o.slot)),
+      .line_o (compared)
+  );
+  for (genvar t = 0; t < TUS; t++) begin : gen_traversed
+    gridrt_onehot #(
+        .LINES(SLOTS)
+    ) u_slot (
+        .valid_i(done_valid_i[t]),
+        .index_i(INDEX_W'(done_slot_i[t])),
+        .line_o (traversed[t])
+    );
+  end
+  // Slot s belongs to unit s modulo TUS.
+  always_comb begin
+    for (int unsigned s = 0; s < SLOTS; s++) ends_here[s] = traversed[s%TUS][s];
+  end
+
   // Slots by state: busy from allocation to commit, over once nothing more is traversed.
   logic [SLOTS-1:0] busy, over, told, waited;
   logic [SLOTS-1:0] settled, ready, after, upper, pick, pick_q;
@@ -172,18 +203,10 @@ module gridrt_feedback #(
       free_q   <= FEEDBACK ? ready != '0 : (pick & settled) != '0;
       commit_q <= FEEDBACK ? ready != '0 : (pick & ~told) != '0;
       if (pick_q != '0) after <= ~(pick_q | (pick_q - SLOTS'(1)));
-      busy <= busy & ~(pick & settled);
-      told <= told | pick;
-      if (hit_valid_o && many[INDEX_W'(hit_o.slot)]) waited[INDEX_W'(hit_o.slot)] <= 1'b1;
-      for (int unsigned t = 0; t < TUS; t++) begin
-        if (done_valid_i[t]) over[INDEX_W'(done_slot_i[t])] <= 1'b1;
-      end
-      if (take) begin
-        busy[INDEX_W'(free_slot)] <= 1'b1;
-        over[INDEX_W'(free_slot)] <= ray_miss_i;
-        told[INDEX_W'(free_slot)] <= 1'b0;
-        waited[INDEX_W'(free_slot)] <= 1'b0;
-      end
+      busy <= (busy & ~(pick & settled)) | enters;
+      over <= ((over | ends_here) & ~enters) | (enters & {SLOTS{ray_miss_i}});
+      told <= (told | pick) & ~enters;
+      waited <= (waited | (compared & many)) & ~enters;
     end
   end
 

@@ -21,6 +21,7 @@ module gridrt_pending #(
   // At most 2 AHEAD - 1 + 8 even if a step was begun too early.
   localparam int unsigned PLANES = $clog2(2 * AHEAD + 8);
   localparam int unsigned AHEAD_LOG = $clog2(AHEAD);
+  localparam int unsigned INDEX_W = (SLOTS > 1) ? $clog2(SLOTS) : 1;
 
   if (ENDS < 1 || ENDS > 6) begin : gen_illegal_ends
     $error("gridrt_pending: ENDS must be 1 to 6");
@@ -34,11 +35,19 @@ module gridrt_pending #(
   logic [2:0][SLOTS-1:0] ended, ended_q;
 
   // What is added, by slot. Slot s belongs to unit s modulo TUS.
-  for (genvar s = 0; s < SLOTS; s++) begin : gen_more
-    logic mine;
-    assign mine = inc_valid_i[s%TUS] && inc_slot_i[s%TUS] == gridrt_pkg::SLOT_W'(s);
-    for (genvar b = 0; b < 4; b++) begin : gen_bit
-      assign more[b][s] = mine && inc_count_i[s%TUS][b];
+  logic [TUS-1:0][SLOTS-1:0] added;
+  for (genvar t = 0; t < TUS; t++) begin : gen_added
+    gridrt_onehot #(
+        .LINES(SLOTS)
+    ) u_slot (
+        .valid_i(inc_valid_i[t]),
+        .index_i(INDEX_W'(inc_slot_i[t])),
+        .line_o (added[t])
+    );
+  end
+  always_comb begin
+    for (int unsigned s = 0; s < SLOTS; s++) begin
+      for (int unsigned b = 0; b < 4; b++) more[b][s] = added[s%TUS][s] && inc_count_i[s%TUS][b];
     end
   end
 
@@ -49,26 +58,34 @@ module gridrt_pending #(
     else end_q <= end_i;
   end
 
-  // How many ports end a task of the slot: carry-save adders over six one-hot vectors.
-  gridrt_pkg::slot_event_t ends;
+  // How many ports end a task of the slot: ones and twos of three pairs of ports.
   logic [5:0][SLOTS-1:0] one;
-  logic [1:0][SLOTS-1:0] sum, carry;
-  logic [SLOTS-1:0] both;
+  for (genvar e = 0; e < 6; e++) begin : gen_end
+    if (e < ENDS) begin : gen_port
+      gridrt_pkg::slot_event_t ends;
+      assign ends = end_q[e];
+      gridrt_onehot #(
+          .LINES(SLOTS)
+      ) u_slot (
+          .valid_i(ends.valid),
+          .index_i(INDEX_W'(ends.slot)),
+          .line_o (one[e])
+      );
+    end else begin : gen_none
+      assign one[e] = '0;
+    end
+  end
+  logic [2:0][SLOTS-1:0] odd, both;
+  logic [SLOTS-1:0] two;
   always_comb begin
-    one = '0;
-    ends = '0;
-    for (int unsigned e = 0; e < ENDS; e++) begin
-      ends = end_q[e];
-      if (ends.valid) one[e] = SLOTS'(1) << ends.slot;
+    for (int unsigned i = 0; i < 3; i++) begin
+      odd[i]  = one[2*i] ^ one[2*i+1];
+      both[i] = one[2*i] & one[2*i+1];
     end
-    for (int unsigned i = 0; i < 2; i++) begin
-      sum[i] = one[3*i] ^ one[3*i+1] ^ one[3*i+2];
-      carry[i] = (one[3*i] & one[3*i+1]) | (one[3*i] & one[3*i+2]) | (one[3*i+1] & one[3*i+2]);
-    end
-    both = sum[0] & sum[1];
-    ended[0] = sum[0] ^ sum[1];
-    ended[1] = carry[0] ^ carry[1] ^ both;
-    ended[2] = (carry[0] & carry[1]) | (carry[0] & both) | (carry[1] & both);
+    two = (odd[0] & odd[1]) | (odd[0] & odd[2]) | (odd[1] & odd[2]);
+    ended[0] = odd[0] ^ odd[1] ^ odd[2];
+    ended[1] = both[0] ^ both[1] ^ both[2] ^ two;
+    ended[2] = ((both[0] | both[1]) & (both[2] | two)) | (both[0] & both[1]) | (both[2] & two);
   end
 
   // count + more - ended: carry-save, then a ripple over the planes.

@@ -9,13 +9,12 @@
 module gridrt_pe #(
     parameter int unsigned B = 17,
     parameter int unsigned SLOTS = 64,
-    parameter int unsigned QUEUE = 16,
     parameter int unsigned REFS = 8192,
     parameter int unsigned TRIS = 4096,
     parameter int unsigned VERTS = 2560,
     parameter bit MASK = 1'b1,
     parameter bit CANCEL = 1'b1,
-    parameter int unsigned DIVIDERS = 3,
+    parameter int unsigned DIVIDERS = 2,
     parameter int unsigned NUMBER = 0
 ) (
     input  logic                          clk_i,
@@ -68,8 +67,8 @@ module gridrt_pe #(
   if (REFS > (1 << gridrt_pkg::REF_W) || TRIS > (1 << TRI_W) || VERTS > (1 << VERT_W)) begin : gen_illegal_memory
     $error("gridrt_pe: a memory is larger than its index");
   end
-  if (SLOTS < 1 || SLOTS > (1 << SLOT_W) || QUEUE < 1) begin : gen_illegal_queue
-    $error("gridrt_pe: SLOTS must be 1 to 64, QUEUE positive");
+  if (SLOTS < 1 || SLOTS > (1 << SLOT_W)) begin : gen_illegal_slots
+    $error("gridrt_pe: SLOTS must be 1 to 64");
   end
 
   logic mine, write_reference, write_triangle, write_vertex;
@@ -89,7 +88,6 @@ module gridrt_pe #(
 
   gridrt_queue #(
       .SLOTS (SLOTS),
-      .QUEUE (QUEUE),
       .CANCEL(CANCEL)
   ) u_queue (
       .clk_i,

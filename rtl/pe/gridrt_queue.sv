@@ -1,8 +1,7 @@
-// The tasks that wait for a PE. A task at the head whose ray has been hit before the task's slab
-// is cancelled: it leaves by the drop port while the PE is busy with another.
+// The task that a PE does next; others wait in gridrt_dispatch. One whose ray has been hit before the
+// task's slab is cancelled: it leaves by the drop port while the PE is busy with another.
 module gridrt_queue #(
     parameter int unsigned SLOTS = 64,
-    parameter int unsigned QUEUE = 16,
     parameter bit CANCEL = 1'b1
 ) (
     input  logic                     clk_i,
@@ -19,29 +18,12 @@ module gridrt_queue #(
     input  logic                     drop_ready_i,
     output logic                     waiting_o      // a task is here
 );
-  localparam int unsigned TASK_W = gridrt_pkg::TASK_W;
-
-  logic out_valid, held, cancelled, moves;
-  logic [TASK_W-1:0] out_data;
-  logic [$clog2(QUEUE+1)-1:0] count;
+  logic held, cancelled, moves;
   gridrt_pkg::task_t next, head;
   logic [gridrt_pkg::DIST_W-1:0] limit;
 
-  gridrt_fifo #(
-      .WIDTH(TASK_W),
-      .DEPTH(QUEUE)
-  ) u_tasks (
-      .clk_i,
-      .rst_ni,
-      .in_valid_i (task_valid_i),
-      .in_ready_o (task_ready_o),
-      .in_data_i  (task_i),
-      .out_valid_o(out_valid),
-      .out_ready_i(moves),
-      .out_data_o (out_data),
-      .count_o    (count)
-  );
-  assign next = out_data;
+  assign next = task_i;
+  assign task_ready_o = moves;
 
   gridrt_limits #(
       .SLOTS(SLOTS)
@@ -64,7 +46,7 @@ module gridrt_queue #(
       held <= 1'b0;
       cancelled <= 1'b0;
     end else if (moves) begin
-      held <= out_valid;
+      held <= task_valid_i;
       cancelled <= CANCEL && (next.enter > limit || next_late);
     end else begin
       cancelled <= CANCEL && (cancelled || head_late);
@@ -76,5 +58,12 @@ module gridrt_queue #(
   assign head_valid_o = held && !cancelled;
   assign head_o = head;
   assign drop_valid_o = held && cancelled;
-  assign waiting_o = held || count != '0;
+  assign waiting_o = held;
+
+`ifdef GRIDRT_ASSERT
+  // A ray has got its slot, and its limit, before its first task comes.
+  always_ff @(posedge clk_i) begin
+    if (rst_ni) assert (!(alloc_i.valid && task_valid_i && alloc_i.slot == next.slot));
+  end
+`endif
 endmodule

@@ -62,12 +62,13 @@ module gridrt_quotient #(
   logic lacks, product_below, follows, was_bit_1, was_bit_2;
   logic [ACC_W-1:0] next_product;
   assign {next_product, product_below} = {product[ACC_W-3:0], {3{lacks}}} - {(ACC_W)'(multiple), 1'b1};
-  gridrt_add_sub #(  // as a module of its own it does not become one slow sum of three
+  gridrt_add_gated #(  // as a module of its own it does not become one slow sum of three
       .WIDTH(B + 2)
   ) i_multiple (
-      .sub_i(1'b0),
-      .a_i  (was_bit_1 ? '0 : {1'b0, length, 1'b0}),
-      .b_i  (was_bit_2 ? '0 : {2'b00, length}),
+      .a_valid_i(!was_bit_1),
+      .a_i({1'b0, length, 1'b0}),
+      .b_valid_i(!was_bit_2),
+      .b_i({2'b00, length}),
       .sum_o(multiple)
   );
 

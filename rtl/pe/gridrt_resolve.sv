@@ -7,7 +7,7 @@ module gridrt_resolve #(
     parameter int unsigned B = 17,
     parameter int unsigned TRIS = 4096,
     parameter int unsigned SLOTS = 64,
-    parameter int unsigned DIVIDERS = 3,
+    parameter int unsigned DIVIDERS = 2,
     parameter int unsigned DEPTH = 16,  // tests that may wait here
     parameter int unsigned ORDER = 16,  // events behind the one that leaves next: a division's time
     localparam int unsigned MAG_W = 3 * B + 2,

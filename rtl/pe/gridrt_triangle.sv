@@ -174,11 +174,28 @@ module gridrt_triangle #(
   logic signed [S_W-1:0] w_8;
   logic [MAG_W-1:0] det_8, tn_8;
   logic good_8, minus_8;
+  logic [MAG_W-1:0] det_size, tn_size;
+  gridrt_add_sub #(
+      .WIDTH(MAG_W)
+  ) i_det_size (
+      .sub_i(det_7[S_W-1]),
+      .a_i  ('0),
+      .b_i  (det_7[MAG_W-1:0]),
+      .sum_o(det_size)
+  );
+  gridrt_add_sub #(
+      .WIDTH(MAG_W)
+  ) i_tn_size (
+      .sub_i(tn_7[S_W-1]),
+      .a_i  ('0),
+      .b_i  (tn_7[MAG_W-1:0]),
+      .sum_o(tn_size)
+  );
   always_ff @(posedge clk_i) begin
     if (valid[7]) begin
       w_8 <= det_7 - uv_7;
-      det_8 <= MAG_W'(det_7[S_W-1] ? -det_7 : det_7);
-      tn_8 <= MAG_W'(tn_7[S_W-1] ? -tn_7 : tn_7);
+      det_8 <= det_size;
+      tn_8 <= tn_size;
       minus_8 <= det_7[S_W-1];
       good_8 <= det_7 != '0 && (u_zero || u_minus == det_7[S_W-1]) &&
           (v_zero || v_minus == det_7[S_W-1]) && (tn_7 == '0 || tn_7[S_W-1] == det_7[S_W-1]) &&

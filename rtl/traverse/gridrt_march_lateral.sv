@@ -22,18 +22,12 @@ module gridrt_march_lateral (
   localparam int unsigned SIGN = REST_W + 1;  // of positions at the samples
   localparam int unsigned PAIRS = 4;
 
-  // A position that is not negative goes on by the increment less a quarter; a negative one stands for
-  // that plus a quarter, and goes on by the increment. Where what comes out is not negative, the ray has
-  // come to the next quarter.
-  function automatic logic [SIGN:0] on(logic [SIGN:0] at, logic [SIGN-SHIFT:0] one,
-                                       logic [REST_W:0] slope);
-    on = at + {at[SIGN] ? {1'b0, slope[REST_W:SHIFT]} : one, slope[SHIFT-1:0]};
+  // Whether a quarter lies before P0's; and a quarter held between P0's and P1's.
+  function automatic logic below(logic [4:0] quarter, logic [2:0] low);
+    below = quarter[4] || quarter[3:0] < {1'b0, low};
   endfunction
-
-  // A quarter, held between P0's and P1's.
   function automatic logic [3:0] held(logic [4:0] quarter, logic [2:0] low, logic [3:0] limit);
-    held = quarter[3:0];
-    if (quarter[4] || quarter[3:0] < {1'b0, low}) held = {1'b0, low};
+    held = below(quarter, low) ? {1'b0, low} : quarter[3:0];
     if (held > limit) held = limit;
   endfunction
 
@@ -49,11 +43,31 @@ module gridrt_march_lateral (
   logic [REST_W-1:0] s3_rest;
   logic [EDGE_W-1:0] s3_edge, s4_edge;
   assign at = {reached, 2'b00, s3_rest};
-  always_comb begin
-    for (int unsigned p = 0; p < PAIRS; p++) begin
-      first[p] = on(at[p], one[p], slope[p]);
-      second[p] = on(first[p], one[p], slope[p]);
-    end
+  // A position that is not negative goes on by the increment less a quarter; a negative one stands for
+  // that plus a quarter, and goes on by the increment. Where what comes out is not negative, the ray has
+  // come to the next quarter.
+  for (genvar p = 0; p < PAIRS; p++) begin : gen_pair
+    logic [SIGN:0] whole, less;
+    assign whole = {1'b0, slope[p]};
+    assign less = {one[p], slope[p][SHIFT-1:0]};
+    gridrt_add_mux #(
+        .WIDTH(SIGN + 1)
+    ) i_first (
+        .first_i(at[p][SIGN]),
+        .a_i(at[p]),
+        .b_i(whole),
+        .c_i(less),
+        .sum_o(first[p])
+    );
+    gridrt_add_mux #(
+        .WIDTH(SIGN + 1)
+    ) i_second (
+        .first_i(first[p][SIGN]),
+        .a_i(first[p]),
+        .b_i(whole),
+        .c_i(less),
+        .sum_o(second[p])
+    );
   end
   always_ff @(posedge clk_i) begin
     if (valid_i[0]) begin
@@ -78,22 +92,24 @@ module gridrt_march_lateral (
     end
   end
 
-  // The samples of a clock are told apart by the signs alone, so the choices are held before.
+  // The samples of a clock are told apart by the signs alone, so the choices are held before: where the
+  // last clock's second sample is, and one and two quarters on. Below P0's quarter and at P1's a sample
+  // does not move.
   logic [PAIRS-1:0][3:0] plus_0, plus_1, plus_2;
   logic [PAIRS-1:0][1:0][3:0] pair;
+  logic [2:0][3:0] s4_sample;
+  logic [4:0][3:0] s5_sample;
+  logic [6:0][3:0] s6_sample;
+  assign plus_0 = {s6_sample[6], s5_sample[4], s4_sample[2], held(quarter[0], low[0], limit[0])};
   always_comb begin
     for (int unsigned p = 0; p < PAIRS; p++) begin
-      plus_0[p] = held(quarter[p], low[p], limit[p]);
-      plus_1[p] = held(quarter[p] + 5'd1, low[p], limit[p]);
-      plus_2[p] = held(quarter[p] + 5'd2, low[p], limit[p]);
+      plus_1[p] = plus_0[p] + 4'(!below(quarter[p], low[p]) && plus_0[p] != limit[p]);
+      plus_2[p] = plus_1[p] + 4'(!below(quarter[p] + 5'd1, low[p]) && plus_1[p] != limit[p]);
       pair[p][0] = first[p][SIGN] ? plus_0[p] : plus_1[p];
       pair[p][1] = (first[p][SIGN] && second[p][SIGN]) ? plus_0[p]
                  : (first[p][SIGN] || second[p][SIGN]) ? plus_1[p] : plus_2[p];
     end
   end
-  logic [2:0][3:0] s4_sample;
-  logic [4:0][3:0] s5_sample;
-  logic [6:0][3:0] s6_sample;
   always_ff @(posedge clk_i) begin
     if (valid_i[1]) s4_sample <= {pair[0], plus_0[0]};
     if (valid_i[2]) s5_sample <= {pair[1], s4_sample};

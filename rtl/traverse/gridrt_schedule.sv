@@ -32,6 +32,14 @@ module gridrt_schedule #(
   assign grant_o = issue_i && able != '0;
   assign able_next = ready & few_i & (grant_o ? ~pick : '1);
 
+  logic [COUNT-1:0] again;
+  gridrt_onehot #(
+      .LINES(COUNT)
+  ) i_again (
+      .valid_i(again_i),
+      .index_i(again_slot_i),
+      .line_o (again)
+  );
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
       ready <= '0;
@@ -41,11 +49,8 @@ module gridrt_schedule #(
     end else begin
       able  <= able_next;
       first <= able_next & idle_i;
-      if (grant_o) begin
-        ready <= ready & ~pick;
-        after <= ~(pick | (pick - 1'b1));
-      end
-      if (again_i) ready[again_slot_i] <= 1'b1;
+      ready <= (grant_o ? ready & ~pick : ready) | again;
+      if (grant_o) after <= ~(pick | (pick - 1'b1));
     end
   end
 

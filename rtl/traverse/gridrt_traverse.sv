@@ -284,15 +284,24 @@ module gridrt_traverse #(
       .read_address_i(s8_slot),
       .read_data_o(s8_limit)
   );
+  logic [COUNT-1:0] limits, starts;
+  gridrt_onehot #(
+      .LINES(COUNT)
+  ) i_limits_it (
+      .valid_i(mine),
+      .index_i(place(interrupt_i.slot)),
+      .line_o (limits)
+  );
+  gridrt_onehot #(
+      .LINES(COUNT)
+  ) i_starts_it (
+      .valid_i(alloc_i.valid && slot_of(place(alloc_i.slot)) == alloc_i.slot),
+      .index_i(place(alloc_i.slot)),
+      .line_o (starts)
+  );
   always_ff @(posedge clk_i or negedge rst_ni) begin
-    if (!rst_ni) begin
-      limited <= '0;
-    end else begin
-      if (mine) limited[place(interrupt_i.slot)] <= 1'b1;
-      if (alloc_i.valid && slot_of(place(alloc_i.slot)) == alloc_i.slot) begin
-        limited[place(alloc_i.slot)] <= 1'b0;
-      end
-    end
+    if (!rst_ni) limited <= '0;
+    else limited <= (limited | limits) & ~starts;
   end
   always_ff @(posedge clk_i) begin
     if (valid[8]) begin

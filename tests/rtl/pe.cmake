@@ -13,8 +13,8 @@ gridrt_rtl_bench(rtl_resolve_12 TOP gridrt_resolve PARAMETERS B=12 TRIS=16 SLOTS
                  SOURCES resolve_bench.cpp)
 
 # The whole of it: as on the board, small, without cancelling, and with pauses inside.
-set(board B=17 SLOTS=64 QUEUE=16 REFS=8192 TRIS=4096 VERTS=2560 DIVIDERS=3 NUMBER=0)
-set(small B=12 SLOTS=8 QUEUE=3 REFS=300 TRIS=100 VERTS=64 DIVIDERS=1 NUMBER=2)
+set(board B=17 SLOTS=64 REFS=8192 TRIS=4096 VERTS=2560 DIVIDERS=2 NUMBER=0)
+set(small B=12 SLOTS=8 REFS=300 TRIS=100 VERTS=64 DIVIDERS=1 NUMBER=2)
 gridrt_rtl_bench(rtl_pe_17 TOP gridrt_pe PARAMETERS ${board} SOURCES pe_bench.cpp LINK gridrt_hal gridrt_image)
 gridrt_rtl_bench(rtl_pe_12 TOP gridrt_pe PARAMETERS ${small} SOURCES pe_bench.cpp LINK gridrt_hal gridrt_image)
 gridrt_rtl_bench(rtl_pe_stalls TOP gridrt_pe PARAMETERS ${board} DEFINES GRIDRT_STALL

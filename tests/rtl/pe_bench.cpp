@@ -68,7 +68,7 @@ TEST_F(Pe, FillsUpAndRecovers) {
     if (HasFatalFailure()) return;
     ASSERT_EQ(counts().tasks, before) << "a PE that is full takes tasks";
     // Waiting, in fetch (a task and rows), tests and their results, events in order.
-    ASSERT_LE(pending(), GRIDRT_RTL_QUEUE + 9 + 32 + 2 + 16);
+    ASSERT_LE(pending(), 10 + 32 + 2 + 16);
     drain({});
     if (HasFatalFailure()) return;
   }
@@ -76,7 +76,7 @@ TEST_F(Pe, FillsUpAndRecovers) {
 
 #ifndef GRIDRT_STALL
 // A hit in ten tests is too much for one divider.
-constexpr double kPace = GRIDRT_RTL_DIVIDERS >= 3 ? 0.9 : 0.6;
+constexpr double kPace = GRIDRT_RTL_DIVIDERS >= 2 ? 0.9 : 0.6;
 
 // The pace: tests for each clock in which there is work. Eight references are read in a clock, so a
 // list of n takes (n + 7) / 8 clocks at the least if the mask leaves out most of it.

@@ -152,6 +152,7 @@ class PeDriver : public testing::Test {
     const int number = static_cast<int>(random_() % kPeSlots);
     PeSlot& slot = slots_[static_cast<std::size_t>(number)];
     if (slot.live && (slot.to_send > 0 || slot.pending() > 0)) return;
+    if (offered_ && offered_->slot == number) return;  // its last task has not been taken yet
     slot = PeSlot{};
     slot.live = true;
     slot.ray = image_->ray(random_);
