@@ -4,7 +4,7 @@
 module gridrt_dispatch #(
     parameter int unsigned EXPS  = 2,
     parameter int unsigned PES   = 4,  // 1, 2 or 4
-    parameter int unsigned DEPTH = 16,  // tasks between an expander and a PE
+    parameter int unsigned DEPTH = 16,  // tasks between an expander and a PE, at least 1
     localparam int unsigned PE_W = gridrt_pkg::PE_W,
     localparam int unsigned TASK_W = gridrt_pkg::TASK_W
 ) (
@@ -22,6 +22,9 @@ module gridrt_dispatch #(
 
   if (PES != 1 && PES != 2 && PES != 4) begin : gen_illegal
     $error("gridrt_dispatch: PES must be 1, 2 or 4");
+  end
+  if (DEPTH < 1) begin : gen_illegal_depth
+    $error("gridrt_dispatch: DEPTH, the engine's QUEUE, must be positive");
   end
 
   logic [PES-1:0][EXPS-1:0] push, room, head_valid, head_ready;

@@ -45,7 +45,15 @@ module gridrt_divide_stage #(
     assign word = {word_i[QUOTIENT_W-2:0], !first[DIVISOR_W]};
   end
   if (RESTORE) begin : gen_restore
-    assign remainder = last + {1'b0, divisor_i & {DIVISOR_W{last[DIVISOR_W]}}};
+    gridrt_add_gated #(
+        .WIDTH(DIVISOR_W + 1)
+    ) i_remainder (
+        .a_valid_i(1'b1),
+        .a_i(last),
+        .b_valid_i(last[DIVISOR_W]),
+        .b_i({1'b0, divisor_i}),
+        .sum_o(remainder)
+    );
   end else begin : gen_signed
     assign remainder = last;
   end

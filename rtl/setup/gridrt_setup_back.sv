@@ -70,7 +70,15 @@ module gridrt_setup_back #(
   logic s29_four, s29_two;
   logic [3:0] s30_quarter;
   assign s27_below = s27_at[AT_W-1];
-  assign less8 = s27_at[AT_W-1:SHIFT] + ({s27_edge, 3'b000} & {EDGE_W + 3{s27_below}});
+  gridrt_add_gated #(
+      .WIDTH(EDGE_W + 3)
+  ) i_less8 (
+      .a_valid_i(1'b1),
+      .a_i(s27_at[AT_W-1:SHIFT]),
+      .b_valid_i(s27_below),
+      .b_i({s27_edge, 3'b000}),
+      .sum_o(less8)
+  );
   assign less4 = {1'b0, s28_high} - {1'b0, s28_edge, 2'b00};
   assign after4 = less4[EDGE_W+2] ? s28_high : less4[EDGE_W+1:0];
   assign less2 = after4 - {1'b0, s28_edge, 1'b0};

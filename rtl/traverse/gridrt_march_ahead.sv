@@ -135,7 +135,15 @@ module gridrt_march_ahead (
 
   // Clock 8: the rest is not negative.
   logic [HIGH_W-1:0] high;
-  assign high = s8_at[HIGH_W-1:0] + (s8_edge[HIGH_W-1:0] & {HIGH_W{s8_at[EDGE_W-1]}});
+  gridrt_add_gated #(
+      .WIDTH(HIGH_W)
+  ) i_rest (
+      .a_valid_i(1'b1),
+      .a_i(s8_at[HIGH_W-1:0]),
+      .b_valid_i(s8_at[EDGE_W-1]),
+      .b_i(s8_edge[HIGH_W-1:0]),
+      .sum_o(high)
+  );
   always_ff @(posedge clk_i) begin
     if (valid_i[5]) begin
       s9_rest_o <= {high, s8_low};

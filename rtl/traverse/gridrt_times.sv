@@ -1,5 +1,4 @@
-// A value times 0 to 7, as 4 times 0, 1 or 2 plus -1, 0, 1 or 2: one carry chain, and one LUT a bit for
-// each of the two parts.
+// A value times 0 to 7: once, twice and four times the value, each added or left out.
 module gridrt_times #(
     parameter int unsigned WIDTH = 12
 ) (
@@ -7,18 +6,23 @@ module gridrt_times #(
     input  logic [WIDTH-1:0] value_i,
     output logic [WIDTH-1:0] product_o  // modulo 2^WIDTH
 );
-  logic minus, one, two, four, eight;
-  assign minus = factor_i[1:0] == 2'd3;
-  assign one = factor_i[0];
-  assign two = factor_i[1:0] == 2'd2;
-  assign four = factor_i[2] ^ minus;
-  assign eight = factor_i == 3'd7;
-  gridrt_add_sub #(
+  logic [WIDTH-1:0] low;
+  gridrt_add_gated #(
+      .WIDTH(WIDTH)
+  ) i_low (
+      .a_valid_i(factor_i[0]),
+      .a_i(value_i),
+      .b_valid_i(factor_i[1]),
+      .b_i(value_i << 1),
+      .sum_o(low)
+  );
+  gridrt_add_gated #(
       .WIDTH(WIDTH)
   ) i_sum (
-      .sub_i(minus),
-      .a_i  ((four ? value_i << 2 : '0) | (eight ? value_i << 3 : '0)),
-      .b_i  ((one ? value_i : '0) | (two ? value_i << 1 : '0)),
+      .a_valid_i(1'b1),
+      .a_i(low),
+      .b_valid_i(factor_i[2]),
+      .b_i(value_i << 2),
       .sum_o(product_o)
   );
 endmodule
