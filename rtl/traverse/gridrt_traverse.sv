@@ -285,16 +285,12 @@ module gridrt_traverse #(
       .read_data_o(s8_limit)
   );
   logic [COUNT-1:0] limits, starts;
-  gridrt_onehot #(
-      .LINES(COUNT)
-  ) i_limits_it (
+  gridrt_onehot #(.LINES(COUNT)) i_limits_it (
       .valid_i(mine),
       .index_i(place(interrupt_i.slot)),
       .line_o (limits)
   );
-  gridrt_onehot #(
-      .LINES(COUNT)
-  ) i_starts_it (
+  gridrt_onehot #(.LINES(COUNT)) i_starts_it (
       .valid_i(alloc_i.valid && slot_of(place(alloc_i.slot)) == alloc_i.slot),
       .index_i(place(alloc_i.slot)),
       .line_o (starts)
