@@ -10,6 +10,7 @@ namespace {
 
 constexpr std::uint64_t kGap = 256;  ///< clocks between two bytes that end a receive()
 constexpr std::size_t kPiece = 4096;
+constexpr std::size_t kMostEarly = std::size_t{1} << 16U;  ///< that read_input() adds to
 
 /// Reports that a host may write.
 bool is_writable(std::uint8_t id) {
@@ -82,15 +83,21 @@ Result<std::size_t> SimTransport::receive(std::span<std::byte> out,
   return 0;
 }
 
-/// Hands the board what has been sent before a report is asked for.
-Result<void> SimTransport::deliver() {
+/// Runs the board while nobody waits for its answers.
+RunResult SimTransport::run_early(bool stop_if_sent) {
   std::array<std::byte, kPiece> piece{};
-  while (!queued().empty()) {
-    const RunResult moved = board_->run(
-        queued(), piece, {.quiet = options_.silent_clocks, .gap = kGap, .stop_if_sent = true});
-    drop(moved.taken);
-    early_.insert(early_.end(), piece.begin(),
-                  piece.begin() + static_cast<std::ptrdiff_t>(moved.given));
+  const RunResult moved =
+      board_->run(queued(), piece,
+                  {.quiet = options_.silent_clocks, .gap = kGap, .stop_if_sent = stop_if_sent});
+  drop(moved.taken);
+  early_.insert(early_.end(), piece.begin(),
+                piece.begin() + static_cast<std::ptrdiff_t>(moved.given));
+  return moved;
+}
+
+Result<void> SimTransport::deliver(std::size_t left) {
+  while (queued().size() > left) {
+    const RunResult moved = run_early(true);
     if (moved.taken == 0 && moved.given == 0) return stuck();
   }
   return {};
@@ -116,7 +123,9 @@ Result<void> SimTransport::exchange(ReportAccess& access) {
 }
 
 Result<void> SimTransport::get_feature(std::uint8_t id, std::span<std::byte> body) {
-  if (auto sent = deliver(); !sent) return sent;
+  if (options_.reports_wait) {
+    if (auto sent = deliver(); !sent) return sent;
+  }
   ReportAccess access{.id = id};
   if (auto done = exchange(access); !done) return done;
   std::ranges::fill(body, std::byte{0});
@@ -126,7 +135,7 @@ Result<void> SimTransport::get_feature(std::uint8_t id, std::span<std::byte> bod
 
 Result<void> SimTransport::set_feature(std::uint8_t id, std::span<const std::byte> body) {
   const bool is_reset = id == protocol::ResetReport::kId;
-  const auto sent = deliver();
+  const auto sent = options_.reports_wait ? deliver() : Result<void>{};
   if (!sent && !is_reset) return sent;  // Reset is for boards that take no more
   ReportAccess access{.set = true, .id = id};
   access.length = std::min(body.size(), access.body.size());
@@ -139,6 +148,19 @@ Result<void> SimTransport::set_feature(std::uint8_t id, std::span<const std::byt
     silences_ = 0;
   }
   return {};
+}
+
+Result<std::optional<std::uint8_t>> SimTransport::read_input(
+    std::span<std::byte> body, std::chrono::milliseconds /*timeout*/) {
+  InputReport report;
+  if (!board_->take_input(report)) {
+    if (early_.size() - given_ >= kMostEarly) return std::nullopt;
+    run_early(false);
+    if (!board_->take_input(report)) return std::nullopt;
+  }
+  std::ranges::fill(body, std::byte{0});
+  std::copy_n(report.body.begin(), std::min(report.body.size(), body.size()), body.begin());
+  return report.id;
 }
 
 }  // namespace gridrt

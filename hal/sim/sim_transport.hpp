@@ -19,10 +19,13 @@ struct SimTransportOptions {
   /// Clocks that the firmware may take for a report, >= 1. Before the first it may load an image
   /// from flash, some 40 clocks a byte, and a self-test before any.
   std::uint64_t report_clocks = 4'000'000;
+  /// A report waits until the board has taken what was sent before it. Without, it overtakes, as
+  /// on USB, where reports have a pipe of their own.
+  bool reports_wait = true;
 };
 
 /// Queues what the host sends and hands it to the board, a byte a clock, in receive() and before
-/// a report is read. Feature reports pass through the board's firmware.
+/// a report is read. Feature and input reports pass through the board's firmware.
 ///
 /// Time limits are clocks, since the speed of a simulation says nothing about the board: a
 /// timeout given in milliseconds is not looked at. receive() returns 0 once the board is silent.
@@ -37,6 +40,15 @@ class SimTransport final : public Transport {
   Result<std::size_t> receive(std::span<std::byte> out, std::chrono::milliseconds timeout) override;
   Result<void> get_feature(std::uint8_t id, std::span<std::byte> body) override;
   Result<void> set_feature(std::uint8_t id, std::span<const std::byte> body) override;
+  /// Takes the input report that waits; if there is none, runs the board until it is silent, or
+  /// until its answers pause, and looks again. Not while many answers wait for receive(): a board
+  /// that cannot get rid of them stands.
+  Result<std::optional<std::uint8_t>> read_input(std::span<std::byte> body,
+                                                 std::chrono::milliseconds timeout) override;
+
+  /// Runs the board until it has taken all but `left` of the bytes that were sent; receive() gives
+  /// what it says meanwhile.
+  Result<void> deliver(std::size_t left = 0);
 
   /// Clocks since power-up.
   [[nodiscard]] std::uint64_t clocks() const { return board_->clocks(); }
@@ -44,7 +56,7 @@ class SimTransport final : public Transport {
  private:
   [[nodiscard]] std::span<const std::byte> queued() const;
   void drop(std::size_t taken);
-  Result<void> deliver();
+  RunResult run_early(bool stop_if_sent);
   Result<void> exchange(ReportAccess& access);
   [[nodiscard]] std::unexpected<Error> stuck() const;
 

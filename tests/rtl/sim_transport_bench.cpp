@@ -151,6 +151,30 @@ TEST(SimTransport, AnInputReportIsTakenOnce) {
   EXPECT_FALSE(board.take_input(report));
 }
 
+TEST(SimTransport, AnInputReportIsReadAndNoAnswerIsLostMeanwhile) {
+  SimTransport link = open();
+  ASSERT_TRUE(link.send(bytes({1, 2, 3})));
+  std::array<std::byte, protocol::kReportBytes> body{};
+  EXPECT_EQ(link.read_input(body, kAnyTime).value(), 32);
+  EXPECT_EQ(body[0], std::byte{100});
+  EXPECT_EQ(body[62], std::byte{162});
+  EXPECT_EQ(body[63], std::byte{0});
+  const std::uint64_t before = link.clocks();
+  EXPECT_FALSE(link.read_input(body, kAnyTime).value());  // the board's time passes
+  EXPECT_GT(link.clocks(), before);
+  EXPECT_EQ(receive_all(link), bytes({1, 2, 3}));
+}
+
+TEST(SimTransport, ReportsOvertakeOnlyIfTheyMay) {
+  SimTransport link = open({.silent_clocks = 1000, .most_silences = 2, .reports_wait = false});
+  ASSERT_TRUE(link.send(bytes({0xFF, 3, 4})));
+  EXPECT_TRUE(get_report<protocol::StatusReport>(link));  // of a deaf board
+  const auto delivered = link.deliver();
+  ASSERT_FALSE(delivered);
+  EXPECT_EQ(delivered.error().kind, ErrorKind::kTimeout);
+  EXPECT_TRUE(link.deliver(2)) << "two bytes may wait";
+}
+
 TEST(SimTransport, WavesAreWritten) {
   const auto path = std::filesystem::temp_directory_path() / "gridrt_sim_transport.fst";
   {

@@ -2,8 +2,8 @@
 # board's servers say.
 if(GRIDRT_BUILD_USB AND TARGET gridrt_virtual)
   set(usb ${PROJECT_SOURCE_DIR}/hal/usb)
-  add_library(gridrt_fake_usb OBJECT usb_fake_bus.cpp usb_fake_hid.cpp ${usb}/bulk_link.cpp
-    ${usb}/hid_link.cpp ${usb}/messages.cpp ${usb}/usb_transport.cpp)
+  add_library(gridrt_fake_usb OBJECT usb_fake_bus.cpp usb_fake_faults.cpp usb_fake_hid.cpp
+    ${usb}/bulk_link.cpp ${usb}/hid_link.cpp ${usb}/messages.cpp ${usb}/usb_transport.cpp)
   target_include_directories(gridrt_fake_usb SYSTEM PUBLIC
     $<TARGET_PROPERTY:LibUSB::usb,INTERFACE_INCLUDE_DIRECTORIES>
     $<TARGET_PROPERTY:HIDAPI::hidraw,INTERFACE_INCLUDE_DIRECTORIES>)
@@ -15,4 +15,11 @@ if(GRIDRT_BUILD_USB AND TARGET gridrt_virtual)
     gridrt_pe gridrt_image gridrt_scene gridrt_hal gridrt_flags GTest::gtest_main)
   target_compile_definitions(unit_usb PRIVATE GRIDRT_SOURCE="${PROJECT_SOURCE_DIR}")
   gtest_discover_tests(unit_usb DISCOVERY_TIMEOUT 60)
+
+  if(TARGET gridrt_sim)
+    add_executable(unit_usb_simulated usb_simulated_test.cpp)
+    target_link_libraries(unit_usb_simulated PRIVATE gridrt_fake_usb gridrt_awkward gridrt_virtual
+      gridrt_driver gridrt_image gridrt_hal gridrt_flags GTest::gtest_main)
+    gtest_discover_tests(unit_usb_simulated DISCOVERY_TIMEOUT 60)
+  endif()
 endif()

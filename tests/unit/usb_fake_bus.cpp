@@ -1,7 +1,6 @@
 #include "tests/unit/usb_fake_bus.hpp"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <span>
 #include <thread>
@@ -14,23 +13,7 @@
 namespace gridrt {
 namespace fake {
 
-Bus& bus() {
-  static Bus only;
-  return only;
-}
-
-void Bus::plug_in(UsbFunction& board, std::uint64_t seed) {
-  *this = Bus{};
-  function = &board;
-  plugged_in = true;
-  random.seed(seed);
-  function->reset();
-  function->control({.request_type = 0, .request = 9, .value = 1}, {});
-}
-
-bool Bus::happens(double chance) {
-  return chance > 0.0 && static_cast<double>(random() >> 11U) * 0x1p-53 < chance;
-}
+void show(const Bus& /*bus*/) {}
 
 namespace {
 
@@ -45,101 +28,29 @@ void finish(libusb_transfer& transfer, libusb_transfer_status status, std::size_
   transfer.callback(&transfer);
 }
 
-libusb_transfer_status status_of(TransferState state) {
-  return state == TransferState::kDone      ? LIBUSB_TRANSFER_COMPLETED
-         : state == TransferState::kStalled ? LIBUSB_TRANSFER_STALL
-                                            : LIBUSB_TRANSFER_NO_DEVICE;
+libusb_transfer_status status_of(Moved::How how) {
+  switch (how) {
+    case Moved::How::kDone:
+      return LIBUSB_TRANSFER_COMPLETED;
+    case Moved::How::kStall:
+      return LIBUSB_TRANSFER_STALL;
+    case Moved::How::kError:
+      return LIBUSB_TRANSFER_ERROR;
+    case Moved::How::kOverflow:
+      return LIBUSB_TRANSFER_OVERFLOW;
+    default:
+      return LIBUSB_TRANSFER_NO_DEVICE;
+  }
 }
 
-void reset_board(UsbFunction& board) {
-  using Report = protocol::ResetReport;
-  std::array<std::byte, 1 + Report::kBytes> bytes{static_cast<std::byte>(Report::kId)};
-  protocol::store(Report{protocol::kResetKey}, std::span(bytes).subspan<1>());
-  board.control({.request_type = 0x21,
-                 .request = 9,
-                 .value = static_cast<std::uint16_t>(0x300 | Report::kId),
-                 .index = usb::kHidInterface,
-                 .length = static_cast<std::uint16_t>(bytes.size())},
-                bytes);
-}
-
-/// Counts a transfer, and what happens after so many.
-void count(Bus& b) {
-  if (++b.counts.transfers == b.faults.reset) reset_board(*b.function);
-  if (b.is_dead() && !b.faults.still_there) b.plugged_in = false;
-}
-
-bool may_fail(const Bus& b) {
-  return b.counts.stalls + b.counts.lost + b.counts.partial + b.counts.overflows < b.faults.most;
-}
-
-bool move_out(Bus& b) {
-  if (b.out.empty() || b.counts.transfers >= b.faults.stop_taking) return false;
-  if (b.happens(b.faults.nak)) {
-    ++b.counts.naks;
-    return false;
-  }
-  libusb_transfer& transfer = *b.out.front();
-  b.out.pop_front();
-  count(b);
-  const std::span<const std::byte> bytes = buffer_of(transfer);
-  const bool may = may_fail(b);
-  if (may && b.happens(b.faults.stall)) {
-    ++b.counts.stalls;
-    b.function->halt(usb::kBulkOut);
-  } else if (may && b.happens(b.faults.lost)) {
-    ++b.counts.lost;
-    finish(transfer, LIBUSB_TRANSFER_ERROR, 0);
-    return true;
-  } else if (may && b.happens(b.faults.partial)) {
-    ++b.counts.partial;
-    const std::size_t some = b.random() % (bytes.size() + 1);
-    b.function->bulk_out(bytes.first(some));
-    finish(transfer, LIBUSB_TRANSFER_ERROR, some);
-    return true;
-  }
-  const TransferState state = b.function->bulk_out(bytes);
-  finish(transfer, status_of(state), state == TransferState::kDone ? bytes.size() : 0);
-  return true;
-}
-
-bool move_in(Bus& b) {
-  if (b.in.empty() || b.counts.transfers >= b.faults.stop_giving) return false;
-  if (b.happens(b.faults.nak)) {
-    ++b.counts.naks;
-    return false;
-  }
-  libusb_transfer& transfer = *b.in.front();
-  std::span<std::byte> room = buffer_of(transfer);
-  if (b.faults.most_in > 0) {
-    room = room.first(std::min(room.size(), 1 + b.random() % b.faults.most_in));
-    ++b.counts.cut;
-  }
-  const bool may = may_fail(b);
-  libusb_transfer_status status = LIBUSB_TRANSFER_COMPLETED;
-  std::size_t given = 0;
-  if (may && b.happens(b.faults.stall)) {
-    ++b.counts.stalls;
-    b.function->halt(usb::kBulkIn);
-  }
-  if (b.happens(b.faults.empty)) {
-    ++b.counts.empty;
-  } else {
-    const TransferState state = b.function->bulk_in(room, given, std::chrono::milliseconds(0));
-    if (state == TransferState::kWaiting) return false;
-    status = status_of(state);
-    if (state == TransferState::kDone && may && b.happens(b.faults.lost)) {
-      ++b.counts.lost;
-      status = LIBUSB_TRANSFER_ERROR;
-      given = 0;
-    } else if (state == TransferState::kDone && may && b.happens(b.faults.overflow)) {
-      ++b.counts.overflows;
-      status = LIBUSB_TRANSFER_OVERFLOW;
-    }
-  }
-  b.in.pop_front();
-  count(b);
-  finish(transfer, status, given);
+/// The oldest transfer of a pipe, if it can be moved.
+bool move_one(Bus& b, std::deque<libusb_transfer*>& queue, bool in) {
+  if (queue.empty()) return false;
+  libusb_transfer& transfer = *queue.front();
+  const auto moved = in ? move_in(b, buffer_of(transfer)) : move_out(b, buffer_of(transfer));
+  if (!moved) return false;
+  queue.pop_front();
+  finish(transfer, status_of(moved->how), moved->bytes);
   return true;
 }
 
@@ -161,8 +72,8 @@ bool move_all(Bus& b) {
   bool moved = false;
   for (bool again = true; again; moved = moved || again) {
     if (b.is_dead()) return bury(b) || moved;
-    again = move_out(b);
-    again = move_in(b) || again;
+    again = move_one(b, b.out, false);
+    again = move_one(b, b.in, true) || again;
   }
   return moved;
 }

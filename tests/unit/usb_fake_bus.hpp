@@ -1,11 +1,14 @@
-// libusb and hidapi, as far as hal/usb calls them, over a UsbFunction in this process; and what a
-// bad cable, a bad board and people do to transfers. Linked in the place of the libraries.
+// A bus with a UsbFunction in this process, and what a bad cable, a bad board and people do to
+// transfers. It stands behind stand-ins for libusb and hidapi, as far as hal/usb calls them
+// (usb_fake_bus.cpp, usb_fake_hid.cpp), or behind a stand-in for the kernel (tests/usb/mock_*).
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <random>
+#include <span>
 #include <string>
 
 #include "tools/virtual/usb_function.hpp"
@@ -59,6 +62,19 @@ struct Bus {
   [[nodiscard]] bool is_dead() const { return counts.transfers >= faults.unplug; }
   bool happens(double chance);
 };
+
+/// How a bulk transfer ended.
+struct Moved {
+  enum class How { kDone, kStall, kError, kOverflow, kGone };
+  How how = How::kDone;
+  std::size_t bytes = 0;
+};
+/// A transfer with the bus's faults; nothing: not yet.
+std::optional<Moved> move_out(Bus& bus, std::span<const std::byte> bytes);
+std::optional<Moved> move_in(Bus& bus, std::span<std::byte> room);
+
+/// What stands before the bus looks at a board that has been plugged in.
+void show(const Bus& bus);
 
 /// The only bus: the libraries' functions have no other way to find it.
 Bus& bus();

@@ -10,9 +10,12 @@ import unittest
 from guest import BIN, Guest
 
 SIZE = "64x48"
+SMALL = "24x18"
 SCRIPT = f"""
 run() {{ echo "== $1"; shift; "$@" 2>&1; echo "-- $?"; }}
 as_nobody() {{ su nobody -c "LD_LIBRARY_PATH=/lib PATH=/programs $*"; }}
+second=/sys/bus/usb/devices/usb1/1-0:1.0/usb1-port2/disable  # the board around the RTL comes later
+echo 1 >$second
 for i in $(seq 50); do [ -e /dev/hidraw0 ] && break; sleep 0.1; done
 run devices gridrt-host --list-devices
 run render gridrt-host /teapot.grt --size {SIZE} --device usb:virtual-1 --hits usb.npy -o usb.png \\
@@ -50,6 +53,16 @@ run usbip-attach usbip attach -r 127.0.0.1 -b 1-1
 for i in $(seq 50); do [ -e /dev/hidraw0 ] && break; sleep 0.1; done
 run usbip-render gridrt-host /teapot.grt --size {SIZE} --device usb:over-ip -o ip.png
 run usbip-selftest gridrt-board selftest
+echo 0 >$second
+for i in $(seq 50); do [ $(ls /dev | grep -c '^hidraw') = 2 ] && break; sleep 0.1; done
+run rtl-render gridrt-host /teapot.grt --size {SMALL} --device usb:rtl --hits rtl.npy -o rtl.png
+gridrt-board --device usb:rtl log >/dev/null
+gridrt-board --device usb:rtl log --follow 3 >rtl-followed 2>&1 &
+follower=$!
+sleep 1
+run rtl-selftest gridrt-board --device usb:rtl selftest
+wait $follower
+run rtl-followed cat rtl-followed
 """
 
 
@@ -63,10 +76,13 @@ class OnADesk(unittest.TestCase):
                     "teapot.grt")
         cls.program("gridrt-host", "teapot.grt", "--size", SIZE, "--device", "seq", "--hits",
                     "seq.npy", "-o", "seq.png")
+        cls.program("gridrt-host", "teapot.grt", "--size", SMALL, "--device", "seq", "--hits",
+                    "small.npy", "-o", "small.png")
         with Guest(["gridrt-host", "gridrt-board", "gridrt-virtual-board", "/usr/sbin/usbip"],
                    {"teapot.grt": cls.read("teapot.grt")}) as guest:
-            board = guest.start_board("--core", "seq")
-            console, cls.files = guest.run(SCRIPT, [board], timeout=400)
+            boards = [guest.start_board("--core", "seq"),
+                      guest.start_board("--core", "sim", "--serial", "rtl")]
+            console, cls.files = guest.run(SCRIPT, boards, timeout=400)
         print(console)
         cls.steps = {name: (text, int(code)) for name, text, code in
                      re.findall(r"(?ms)^== (\S+)\n(.*?)^-- (\d+)$", console)}
@@ -144,6 +160,13 @@ class OnADesk(unittest.TestCase):
         self.step("usbip-render")
         self.assertEqual(self.files["ip.png"], self.read("seq.png"))
         self.assertRegex(self.step("usbip-selftest"), r"^Passed: ")
+
+    def test_the_rtl_renders_and_its_firmware_answers(self):
+        self.step("rtl-render")
+        self.assertEqual(self.files["rtl.npy"], self.read("small.npy"))
+        self.assertEqual(self.files["rtl.png"], self.read("small.png"))
+        self.assertRegex(self.step("rtl-selftest"), r"^Passed: (\d+) of \1 bytes .* run 1\n$")
+        self.assertRegex(self.step("rtl-followed"), r"(?m)^ *\d+  SelfTestPassed +\d+$")
 
 
 if __name__ == "__main__":

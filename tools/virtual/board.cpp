@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <limits>
+#include <optional>
 #include <thread>
 #include <utility>
 
@@ -33,17 +34,29 @@ std::unique_ptr<Endpoint> software_core(const VirtualBoardOptions& options) {
 
 #ifdef GRIDRT_VIRTUAL_SIM
 
-/// The simulated board from the wire's side. Its clock runs while it is asked for bytes.
+/// The simulated board from the wire's side. Its clock runs while it is asked for bytes or reports,
+/// a short time at once, since the bus stands meanwhile. A board that stands is none that has
+/// failed: its host has time limits of its own, and resets it.
 class SimulatedEndpoint final : public Endpoint {
  public:
   explicit SimulatedEndpoint(std::unique_ptr<SimBoard> board)
-      : link_(std::move(board),
-              {.silent_clocks = kSilence, .most_silences = std::numeric_limits<int>::max()}) {}
+      : link_(std::move(board), {.silent_clocks = kSlice,
+                                 .most_silences = std::numeric_limits<int>::max(),
+                                 .reports_wait = false}) {}
 
-  Result<void> consume(std::span<const std::byte> bytes) override { return link_.send(bytes); }
+  Result<void> consume(std::span<const std::byte> bytes) override {
+    if (auto sent = link_.send(bytes); !sent) return sent;
+    // A host that is ahead waits as it does for a board that answers NAK.
+    for (std::uint64_t clocks = 0; clocks < kLongest; clocks += kSlice) {
+      if (link_.deliver(kAhead)) break;
+    }
+    return {};
+  }
   Result<std::size_t> produce(std::span<std::byte> out,
                               std::chrono::milliseconds timeout) override {
-    return link_.receive(out, timeout);
+    auto got = link_.receive(out, timeout);
+    if (!got && got.error().kind == ErrorKind::kTimeout) return 0;
+    return got;
   }
   Result<void> get_feature(std::uint8_t id, std::span<std::byte> body) override {
     return link_.get_feature(id, body);
@@ -51,21 +64,36 @@ class SimulatedEndpoint final : public Endpoint {
   Result<void> set_feature(std::uint8_t id, std::span<const std::byte> body) override {
     return link_.set_feature(id, body);
   }
+  /// An input report, id first; 0 if none waits.
+  std::size_t input(std::span<std::byte> report) {
+    if (report.size() < protocol::kReportBytes) return 0;
+    const std::optional<std::uint8_t> id =
+        link_.read_input(report.subspan(1, protocol::kReportBytes - 1), {}).value_or(std::nullopt);
+    if (!id) return 0;
+    report[0] = static_cast<std::byte>(*id);
+    return protocol::kReportBytes;
+  }
 
  private:
-  static constexpr std::uint64_t kSilence = 50'000;
+  static constexpr std::uint64_t kSlice = 2'000;
+  static constexpr std::uint64_t kLongest = 250'000;  ///< that a board in order takes no byte
+  static constexpr std::size_t kAhead = std::size_t{1} << 15U;
   SimTransport link_;
 };
 
-Result<VirtualBoard> simulated() {
-  auto board = make_sim_board(sim_boards().front());
+Result<VirtualBoard> simulated(const VirtualBoardOptions& options) {
+  auto board = make_sim_board(sim_boards().front(), {.flash = options.flash});
   if (!board) return std::unexpected(std::move(board.error()));
-  return VirtualBoard{std::make_unique<SimulatedEndpoint>(std::move(*board)), {}};
+  auto endpoint = std::make_unique<SimulatedEndpoint>(std::move(*board));
+  InputSource input = [sim = endpoint.get()](std::span<std::byte> report) {
+    return sim->input(report);
+  };
+  return VirtualBoard{std::move(endpoint), std::move(input)};
 }
 
 #else
 
-Result<VirtualBoard> simulated() {
+Result<VirtualBoard> simulated(const VirtualBoardOptions& /*options*/) {
   return fail(ErrorKind::kUnsupported, "this build has no simulated RTL",
               "configure with -DGRIDRT_BUILD_SIM=ON");
 }
@@ -79,7 +107,7 @@ Result<VirtualBoard> make_virtual_board(const VirtualBoardOptions& options) {
   if (options.serial.size() > kMostSerial) {
     return fail(ErrorKind::kLimit, "a serial has at most 16 characters: " + options.serial);
   }
-  if (options.core == "sim") return simulated();
+  if (options.core == "sim") return simulated(options);
   if (options.core != "seq" && options.core != "omp") {
     return fail(ErrorKind::kUsage, "no core '" + options.core + "'", "use seq, omp or sim");
   }
