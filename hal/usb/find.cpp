@@ -43,8 +43,10 @@ std::string node_of(libusb_device* device) {
   return node.data();
 }
 
-/// Whether an interface has an endpoint of this address and kind.
+/// Whether an interface has an endpoint of this address and kind. Where the descriptor's lengths
+/// are wrong, libusb gives the number of endpoints that it claims, and none.
 bool has_endpoint(const libusb_interface_descriptor& interface, std::uint8_t address, int kind) {
+  if (interface.endpoint == nullptr) return false;
   for (int i = 0; i < interface.bNumEndpoints; ++i) {
     const libusb_endpoint_descriptor& end = interface.endpoint[i];
     if (end.bEndpointAddress == address && (end.bmAttributes & 3) == kind) return true;
