@@ -5,7 +5,6 @@
 #include <random>
 #include <utility>
 
-#include "hal/usb/usb.hpp"
 #include "host/driver/session.hpp"
 
 namespace gridrt {
@@ -42,8 +41,7 @@ Result<void> synchronise(Connection& connection, std::chrono::milliseconds limit
 
 bool is_usb(std::string_view device) { return device == "usb" || device.starts_with("usb:"); }
 
-Result<std::unique_ptr<Device>> open_usb_device(const DeviceOptions& options) {
-  UsbOptions usb;
+Result<std::unique_ptr<Device>> open_usb_device(const DeviceOptions& options, UsbOptions usb) {
   const std::size_t colon = options.name.find(':');
   if (colon != std::string::npos) usb.serial = options.name.substr(colon + 1);
   usb.patience = std::chrono::milliseconds(std::max(1, options.timeout_ms));

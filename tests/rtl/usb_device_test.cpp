@@ -192,9 +192,10 @@ TEST(UsbDevice, ImageRaysAndHitsAreTheBytesOfSeq) {
   const auto counters = bench.host.report<protocol::CountersReport>();
   EXPECT_EQ(counters.rays, 1200U);
   fmt::print(
-      "{} rays, {} bytes to the board, {} from it in {} clocks; rays were in the engine for {}; "
-      "the board waited for USB for {}, USB took no answer for {}\n",
-      counters.rays, link.hears, link.speaks, link.all, counters.cycles, link.waits, link.blocked);
+      "{} rays, {} bytes to the board, {} from it in {} clocks; rays were in the engine for {}, it "
+      "was idle for {}; the board waited for USB for {}, USB took no answer for {}\n",
+      counters.rays, link.hears, link.speaks, link.all, counters.cycles,
+      link.all - static_cast<long>(counters.cycles), link.waits, link.blocked);
   RecordProperty("clocks", static_cast<int>(link.all));
   RecordProperty("waits", static_cast<int>(link.waits));
 }

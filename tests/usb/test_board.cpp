@@ -1,6 +1,6 @@
 // A board for tests in the guest, behind USB redirection: `faults SOCKET` goes on to the next
-// schedule of faults each time that it is reset; `endless SOCKET` takes every byte and never runs
-// out of its own.
+// schedule of faults each time that it is reset; `endless SOCKET` takes every byte and, once a
+// Control report has set `log`, never runs out of its own.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -125,15 +125,24 @@ class EndlessBoard final : public Endpoint {
  public:
   Result<void> consume(std::span<const std::byte> /*bytes*/) override { return {}; }
   Result<std::size_t> produce(std::span<std::byte> out, milliseconds /*timeout*/) override {
-    return out.size();
+    return speaks_ ? out.size() : 0;
   }
   Result<void> get_feature(std::uint8_t /*id*/, std::span<std::byte> body) override {
     std::ranges::fill(body, std::byte{0});
     return {};
   }
-  Result<void> set_feature(std::uint8_t /*id*/, std::span<const std::byte> /*body*/) override {
+  Result<void> set_feature(std::uint8_t id, std::span<const std::byte> body) override {
+    if (id != protocol::ControlReport::kId || body.size() < protocol::ControlReport::kBytes) {
+      return {};
+    }
+    protocol::ControlReport control;
+    protocol::load(body.first<protocol::ControlReport::kBytes>(), control);
+    speaks_ = control.log != 0;
     return {};
   }
+
+ private:
+  bool speaks_ = false;
 };
 
 int serve(std::string_view mode, const char* place) {
