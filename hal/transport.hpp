@@ -46,6 +46,13 @@ class Transport {
                                                          std::chrono::milliseconds /*timeout*/) {
     return fail(ErrorKind::kUnsupported, "this link has no reports that come by themselves");
   }
+
+  /// The time in which a peer's patience is measured, from any start. A link to a simulated device
+  /// has that device's.
+  [[nodiscard]] virtual std::chrono::milliseconds now() const {
+    return std::chrono::duration_cast<std::chrono::milliseconds>(
+        std::chrono::steady_clock::now().time_since_epoch());
+  }
 };
 
 /// Reads a report as its struct, as in get_report<protocol::StatusReport>(transport).

@@ -36,11 +36,15 @@ class Connection {
 
   /// The next good frame, or nothing when the device has been silent for the time limit. Faulty
   /// frames are skipped: what they carried comes again when it is asked for again. The payload is
-  /// valid until the next call.
+  /// valid until the next call. Errors: the link's, and kTimeout for a device that sends and sends,
+  /// but nothing that its caller calls progress().
   Result<std::optional<Frame>> receive() { return receive(timeout_); }
 
   /// The same with another time limit.
   Result<std::optional<Frame>> receive(std::chrono::milliseconds timeout);
+
+  /// What is waited for has come, or begins to be waited for.
+  void progress();
 
   /// Counts bytes from here on.
   void forget_counts() { bytes_out_ = bytes_in_ = 0; }
@@ -52,6 +56,9 @@ class Connection {
   std::unique_ptr<Transport> transport_;
   std::chrono::milliseconds timeout_;
   FrameReader reader_;
+  std::chrono::milliseconds last_progress_{0};
+  std::chrono::milliseconds last_sign_{0};  // progress, silence, or word that work goes on
+  bool noisy_ = false;                      // bytes have come since
   std::uint32_t sequence_ = 1;
   std::uint64_t bytes_out_ = 0;
   std::uint64_t bytes_in_ = 0;

@@ -22,6 +22,7 @@ using protocol::ErrorCode;
 using protocol::FrameType;
 
 constexpr int kMostAttempts = 16;  ///< times that one batch is sent before it is given up
+constexpr std::size_t kMostLogWords = std::size_t{1} << 16U;  ///< above what any board keeps
 
 }  // namespace
 
@@ -119,6 +120,7 @@ Result<void> Session::trace(std::span<const Segment> segments, Query query, std:
   }
   Work work{*answers_, segments, query, hits, {}, {}};
   choose(work);
+  connection_.progress();
   std::size_t next = 0;
   while (next < work.sent.size() || !work.in_flight.empty()) {
     while (next < work.sent.size() &&
@@ -226,6 +228,7 @@ Result<void> Session::take_hits(Work& work, Batch& batch, const Frame& frame) {
   });
   if (const char* found = defect.load()) return broken(found);
   batch.done = true;
+  connection_.progress();
   return {};
 }
 
@@ -273,6 +276,11 @@ Result<std::vector<ExplainEvent>> Session::explain(const Image& image, const Seg
     if (!log) return std::unexpected(log.error());
     lost = lost || log->overflow != 0;
     if (log->count == 0) break;
+    if (words.size() > kMostLogWords) {
+      return fail(ErrorKind::kProtocol,
+                  fmt::format("the event log of the device '{}' does not end", name_),
+                  "this is a defect of the device");
+    }
     const std::size_t count = std::min<std::size_t>(log->count, log->words.size());
     words.insert(words.end(), log->words.begin(),
                  log->words.begin() + static_cast<std::ptrdiff_t>(count));

@@ -41,6 +41,7 @@ struct Reply {
 
 /// Waits for the answer to `sequence`, skipping answers to other frames.
 Result<Reply> wait_for(Connection& connection, std::uint32_t sequence) {
+  connection.progress();
   for (;;) {
     const Result<std::optional<Frame>> received = connection.receive();
     if (!received) return std::unexpected(received.error());

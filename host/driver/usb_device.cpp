@@ -24,6 +24,7 @@ Result<void> synchronise(Connection& connection, std::chrono::milliseconds limit
   for (int attempt = 0; attempt < kMostAttempts; ++attempt, patience *= 2) {
     const std::uint32_t sequence = connection.next_sequence();
     if (auto sent = connection.send(FrameType::kNoOp, sequence, {}); !sent) return sent;
+    connection.progress();
     const auto end = std::chrono::steady_clock::now() + patience;
     while (std::chrono::steady_clock::now() < end) {
       const Result<std::optional<Frame>> frame = connection.receive(patience);

@@ -166,6 +166,8 @@ class BadCable final : public Transport {
     return link_.set_feature(id, body);
   }
 
+  [[nodiscard]] std::chrono::milliseconds now() const override { return link_.now(); }
+
   [[nodiscard]] bool happened() const { return happened_; }
   [[nodiscard]] std::uint64_t faults() const {
     return to_board_.faults() + to_host_.faults() + (happened_ ? 1 : 0);

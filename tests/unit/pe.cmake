@@ -5,7 +5,7 @@ target_link_libraries(unit_pe PRIVATE gridrt_adversarial gridrt_driver gridrt_pe
                       gridrt_flags GTest::gtest_main fmt::fmt)
 gtest_discover_tests(unit_pe DISCOVERY_TIMEOUT 60)
 
-add_executable(unit_driver driver_ray_order_test.cpp driver_recovery_test.cpp driver_refusal_test.cpp)
+add_executable(unit_driver driver_endless_test.cpp driver_ray_order_test.cpp driver_recovery_test.cpp driver_refusal_test.cpp)
 target_link_libraries(unit_driver PRIVATE gridrt_driver gridrt_pe gridrt_image gridrt_scene
                       gridrt_flags GTest::gtest_main fmt::fmt)
 gtest_discover_tests(unit_driver DISCOVERY_TIMEOUT 60)
