@@ -26,11 +26,11 @@ bool next_word(Registers& registers, uint32_t& word) {
   return false;
 }
 
-/// Takes what the shell has said so far.
+/// Takes a byte of what the shell has said: one for each look at something else, so that a shell
+/// that never stops does not keep firmware here.
 void listen(Feed& feed, Answers& answers) {
-  for (int byte = feed.byte(); byte >= 0 && !answers.refused(); byte = feed.byte()) {
-    answers.add(static_cast<uint8_t>(byte));
-  }
+  const int byte = feed.byte();
+  if (byte >= 0) answers.add(static_cast<uint8_t>(byte));
 }
 
 BootError fail(BootResult& result, BootError error, uint32_t detail) {

@@ -24,7 +24,11 @@ const wire::Window* window_at(std::uint32_t address) {
 }  // namespace
 
 BoardModel::BoardModel(std::unique_ptr<Endpoint> core, const BoardModelOptions& options)
-    : core_(std::move(core)), flash_(options.flash), firmware_(*this, options.vectors) {
+    : core_(std::move(core)),
+      flash_(options.flash),
+      reads_(options.reads),
+      writes_(options.writes),
+      firmware_(*this, options.vectors) {
   std::array<std::byte, 16> text{};
   for (std::size_t i = 0; i < std::min(text.size(), options.serial.size()); ++i) {
     text[i] = static_cast<std::byte>(options.serial[i]);
@@ -92,7 +96,7 @@ Result<void> BoardModel::get_feature(std::uint8_t id, std::span<std::byte> body)
   if (auto done = ask(wire::MailboxKind::kGet, id, 0); !done) return done;
   std::ranges::fill(body, std::byte{0});
   const std::size_t length =
-      (*answer_ >> reg::Mailbox::kAnswerLengthBit) & reg::Mailbox::kAnswerLengthMask;
+      (answer_.value_or(0) >> reg::Mailbox::kAnswerLengthBit) & reg::Mailbox::kAnswerLengthMask;
   for (std::size_t i = 0; i < std::min({body.size(), length, kWord * body_.size()}); ++i) {
     body[i] = static_cast<std::byte>(body_[i / kWord] >> (8 * (i % kWord)));
   }
@@ -127,6 +131,11 @@ std::optional<InputReport> BoardModel::take_input() {
 }
 
 std::uint32_t BoardModel::read(std::uint32_t address) {
+  const std::uint32_t value = read_honestly(address);
+  return reads_ ? reads_(address, value) : value;
+}
+
+std::uint32_t BoardModel::read_honestly(std::uint32_t address) {
   clocks_ += kAccessClocks;
   if (address < kWindowsEnd) return read_window(address);
   if (address >= reg::Watch::kStuck) return read_watch(address);
@@ -154,6 +163,7 @@ std::uint32_t BoardModel::read(std::uint32_t address) {
 }
 
 void BoardModel::write(std::uint32_t address, std::uint32_t data) {
+  if (writes_) writes_(address, data);
   clocks_ += kAccessClocks;
   if (address < kWindowsEnd) return write_window(address, data);
   if (address >= reg::MailboxBody::kWords && address < reg::MailboxBody::kWords + kWindowBytes) {
@@ -229,6 +239,8 @@ void BoardModel::write_window(std::uint32_t address, std::uint32_t data) {
   if (at >= body.size()) return;
   protocol::detail::put32(body.data() + at, data);
   if (at + kWord != body.size()) return;  // the last word is the one that counts
+  // A frame under way is given up with the shell's state.
+  if (window->report == protocol::ResetReport::kId) link_frames_.clear();
   if (auto done = core_->set_feature(window->report, body);
       !done && done.error().kind != ErrorKind::kUnsupported) {
     broken_ = done.error();

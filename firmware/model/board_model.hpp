@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -22,6 +23,10 @@ struct BoardModelOptions {
   std::string serial = {};            ///< at most 16 characters
   std::vector<std::byte> flash = {};  ///< from flash_address on; empty: an erased flash
   SelfTestVectors vectors = {};       ///< memory stays the caller's
+  /// Of tests: what firmware reads at an address instead of the value that is there.
+  std::function<std::uint32_t(std::uint32_t address, std::uint32_t value)> reads = {};
+  /// Of tests: told what firmware writes before it takes effect.
+  std::function<void(std::uint32_t address, std::uint32_t data)> writes = {};
 };
 
 /// An input report on its way to the host.
@@ -64,6 +69,7 @@ class BoardModel final : public Endpoint, private Registers {
   static constexpr std::uint32_t kLimit = 1U << 20U;
 
   std::uint32_t read(std::uint32_t address) override;
+  std::uint32_t read_honestly(std::uint32_t address);
   void write(std::uint32_t address, std::uint32_t data) override;
   std::uint32_t read_window(std::uint32_t address);
   void write_window(std::uint32_t address, std::uint32_t data);
@@ -79,6 +85,8 @@ class BoardModel final : public Endpoint, private Registers {
   std::array<std::uint32_t, 4> serial_{};
   std::uint32_t reports_ = 0;  // that the core has, a bit each
   std::vector<std::byte> flash_;
+  std::function<std::uint32_t(std::uint32_t, std::uint32_t)> reads_;
+  std::function<void(std::uint32_t, std::uint32_t)> writes_;
   std::map<std::uint32_t, std::vector<std::byte>> windows_;  // by base: what was read or written
   std::array<std::uint32_t, 16> body_{};
   std::array<std::uint32_t, 16> event_body_{};

@@ -1,5 +1,6 @@
 // Images in flash: loaded, refused with the right code, told apart from a host's.
 #include <cstring>
+#include <stdexcept>
 
 #include "hal/crc32c.hpp"
 #include "host/image/image_frames.hpp"
@@ -175,6 +176,25 @@ TEST(FirmwareBoot, ASilentFlashOrLoaderEndsTheBootInTime) {
   ASSERT_TRUE(command(*board, protocol::BoardCommand::kBoot));
   EXPECT_EQ(static_cast<BootError>(report<protocol::BootReport>(*board).error),
             BootError::kShellSilent);
+  ASSERT_TRUE(command(*board, protocol::BoardCommand::kBoot));
+  EXPECT_EQ(report<protocol::BootReport>(*board).resident, 1U);
+}
+
+TEST(FirmwareBoot, AShellThatNeverStopsAnsweringEndsTheBootInTime) {
+  constexpr std::uint64_t kMost = std::uint64_t{1} << 20U;  // reads and writes of registers
+  bool endless = true;
+  std::uint64_t reads = 0;
+  auto options = board_options(must_flash(board_image()));
+  options.reads = [&](std::uint32_t address, std::uint32_t value) -> std::uint32_t {
+    namespace feed = wire::registers::Feed;
+    if (++reads > kMost) throw std::runtime_error("the firmware reads for ever");
+    if (!endless) return value;
+    return address == feed::kAnswer ? 1U << feed::kAnswerValidBit : value;
+  };
+  const auto board = make_board(options);
+  EXPECT_EQ(static_cast<BootError>(report<protocol::BootReport>(*board).error),
+            BootError::kShellSilent);
+  endless = false;
   ASSERT_TRUE(command(*board, protocol::BoardCommand::kBoot));
   EXPECT_EQ(report<protocol::BootReport>(*board).resident, 1U);
 }
