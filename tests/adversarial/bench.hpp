@@ -44,7 +44,7 @@ class Bench {
   /// What goes beyond the device (lattice bits, PEs, layout) is cut down to it, a scene that does
   /// not fit is loaded in chunks, and a grid too fine for the lattice or the device falls back to
   /// the default one. Of the rays the device gets the part that GRIDRT_FRACTION says; `seq` answers
-  /// the others.
+  /// the others, which are not compared: they are where seq itself is run.
   static Result<Bench> open(const Scene& scene, const Configuration& configuration);
 
   [[nodiscard]] const truth::Tracer& truth() const { return *truth_; }
