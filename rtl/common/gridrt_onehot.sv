@@ -2,7 +2,7 @@
 // the left of an assignment, becomes a shifter that takes several times as much.
 module gridrt_onehot #(
     parameter int unsigned LINES = 64,
-    localparam int unsigned INDEX_W = (LINES > 1) ? $clog2(LINES) : 1
+    parameter int unsigned INDEX_W = (LINES > 1) ? $clog2(LINES) : 1
 ) (
     input  logic               valid_i,
     input  logic [INDEX_W-1:0] index_i,
@@ -12,8 +12,8 @@ module gridrt_onehot #(
   localparam int unsigned LOWS = 1 << LOW_W;
   localparam int unsigned HIGHS = (LINES + LOWS - 1) / LOWS;
 
-  if (LINES < 1) begin : gen_illegal
-    $error("gridrt_onehot: LINES must be positive");
+  if (LINES < 1 || INDEX_W < 1 || LINES > (1 << INDEX_W)) begin : gen_illegal
+    $error("gridrt_onehot: LINES must be positive, and INDEX_W enough for them");
   end
 
   logic [ LOWS-1:0] low;

@@ -21,7 +21,6 @@ module gridrt_pending #(
   // At most 2 AHEAD - 1 + 8 even if a step was begun too early.
   localparam int unsigned PLANES = $clog2(2 * AHEAD + 8);
   localparam int unsigned AHEAD_LOG = $clog2(AHEAD);
-  localparam int unsigned INDEX_W = (SLOTS > 1) ? $clog2(SLOTS) : 1;
 
   if (ENDS < 1 || ENDS > 6) begin : gen_illegal_ends
     $error("gridrt_pending: ENDS must be 1 to 6");
@@ -38,10 +37,11 @@ module gridrt_pending #(
   logic [TUS-1:0][SLOTS-1:0] added;
   for (genvar t = 0; t < TUS; t++) begin : gen_added
     gridrt_onehot #(
-        .LINES(SLOTS)
+        .LINES  (SLOTS),
+        .INDEX_W(gridrt_pkg::SLOT_W)
     ) u_slot (
         .valid_i(inc_valid_i[t]),
-        .index_i(INDEX_W'(inc_slot_i[t])),
+        .index_i(inc_slot_i[t]),
         .line_o (added[t])
     );
   end
@@ -65,10 +65,11 @@ module gridrt_pending #(
       gridrt_pkg::slot_event_t ends;
       assign ends = end_q[e];
       gridrt_onehot #(
-          .LINES(SLOTS)
+          .LINES  (SLOTS),
+          .INDEX_W(gridrt_pkg::SLOT_W)
       ) u_slot (
           .valid_i(ends.valid),
-          .index_i(INDEX_W'(ends.slot)),
+          .index_i(ends.slot),
           .line_o (one[e])
       );
     end else begin : gen_none
