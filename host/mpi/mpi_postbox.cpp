@@ -28,10 +28,9 @@ class MpiPostbox final : public Postbox {
   }
 
   ~MpiPostbox() override {
-    // What nobody has taken by now may be taken while MPI goes on, so its bytes stay.
-    if (!clear_sent() || outgoing_.empty()) return;
-    [[maybe_unused]] const auto* kept =
-        std::make_unique<std::deque<Outgoing>>(std::move(outgoing_)).release();
+    // What is under way by now may end while MPI goes on, so its bytes stay.
+    if (!clear_sent() || !outgoing_.empty()) keep(std::move(outgoing_));
+    if (!incoming_.empty()) keep(std::move(incoming_));
   }
 
   [[nodiscard]] int rank() const override { return rank_; }
@@ -53,33 +52,32 @@ class MpiPostbox final : public Postbox {
 
   Result<std::optional<Parcel>> receive(int device) override {
     if (auto done = clear_sent(); !done) return std::unexpected(std::move(done.error()));
-    int there = 0;
-    MPI_Message message{};
-    MPI_Status status{};
-    const int tag = device == kAnyDevice ? MPI_ANY_TAG : device;
-    if (auto done = check(
-            MPI_Improbe(MPI_ANY_SOURCE, tag, MPI_COMM_WORLD, &there, &message, &status), "fetch");
-        !done) {
-      return std::unexpected(std::move(done.error()));
+    if (auto done = begin_receive(device); !done) return std::unexpected(std::move(done.error()));
+    // What comes from one rank stays in order; what another sends does not wait for it.
+    late_.assign(static_cast<std::size_t>(ranks_), false);
+    for (auto in = incoming_.begin(); in != incoming_.end(); ++in) {
+      if (late_[static_cast<std::size_t>(in->peer)]) continue;
+      if (device != kAnyDevice && in->device != device) continue;
+      int there = 0;
+      const int code = MPI_Test(&in->request, &there, MPI_STATUS_IGNORE);
+      if (auto done = check(code, "receive"); !done)
+        return std::unexpected(std::move(done.error()));
+      if (there == 0) {
+        late_[static_cast<std::size_t>(in->peer)] = true;
+        continue;
+      }
+      Head head;
+      if (in->bytes.size() < sizeof(head)) {
+        return fail(ErrorKind::kTransport, "a message between ranks is cut short");
+      }
+      std::memcpy(&head, in->bytes.data(), sizeof(head));
+      Parcel parcel{static_cast<ParcelKind>(head.kind), in->peer, in->device, head.number, {}};
+      parcel.content.assign(in->bytes.begin() + sizeof(head), in->bytes.end());
+      spare_ = std::move(in->bytes);
+      incoming_.erase(in);
+      return parcel;
     }
-    if (there == 0) return std::nullopt;
-    int size = 0;
-    MPI_Get_count(&status, MPI_BYTE, &size);
-    incoming_.resize(static_cast<std::size_t>(size));
-    if (auto done = check(MPI_Mrecv(incoming_.data(), size, MPI_BYTE, &message, MPI_STATUS_IGNORE),
-                          "receive");
-        !done) {
-      return std::unexpected(std::move(done.error()));
-    }
-    Head head;
-    if (incoming_.size() < sizeof(head)) {
-      return fail(ErrorKind::kTransport, "a message between ranks is cut short");
-    }
-    std::memcpy(&head, incoming_.data(), sizeof(head));
-    Parcel parcel{
-        static_cast<ParcelKind>(head.kind), status.MPI_SOURCE, status.MPI_TAG, head.number, {}};
-    parcel.content.assign(incoming_.begin() + sizeof(head), incoming_.end());
-    return parcel;
+    return std::nullopt;
   }
 
  private:
@@ -87,6 +85,41 @@ class MpiPostbox final : public Postbox {
     MPI_Request request = MPI_REQUEST_NULL;
     std::vector<std::byte> bytes;
   };
+
+  /// A message that has begun to come. Its sender may stop before it is all there.
+  struct Incoming {
+    int peer = 0;
+    int device = 0;
+    MPI_Request request = MPI_REQUEST_NULL;
+    std::vector<std::byte> bytes;
+  };
+
+  template <typename Messages>
+  static void keep(Messages messages) {
+    [[maybe_unused]] const auto* kept = std::make_unique<Messages>(std::move(messages)).release();
+  }
+
+  /// Of messages that have begun to come, not so many that memory could run out.
+  static constexpr std::size_t kMostIncoming = 64;
+
+  /// Begins to take the next message for the device, if there is one.
+  Result<void> begin_receive(int device) {
+    if (incoming_.size() >= kMostIncoming) return {};
+    int there = 0;
+    MPI_Message message{};
+    MPI_Status status{};
+    const int tag = device == kAnyDevice ? MPI_ANY_TAG : device;
+    const int code = MPI_Improbe(MPI_ANY_SOURCE, tag, MPI_COMM_WORLD, &there, &message, &status);
+    if (auto done = check(code, "fetch"); !done || there == 0) return done;
+    int size = 0;
+    MPI_Get_count(&status, MPI_BYTE, &size);
+    Incoming& in = incoming_.emplace_back();
+    in.peer = status.MPI_SOURCE;
+    in.device = status.MPI_TAG;
+    in.bytes = std::exchange(spare_, {});
+    in.bytes.resize(static_cast<std::size_t>(size));
+    return check(MPI_Imrecv(in.bytes.data(), size, MPI_BYTE, &message, &in.request), "receive");
+  }
 
   static Result<void> check(int code, const char* what) {
     if (code == MPI_SUCCESS) return {};
@@ -112,7 +145,9 @@ class MpiPostbox final : public Postbox {
   int rank_ = 0;
   int ranks_ = 1;
   std::deque<Outgoing> outgoing_;
-  std::vector<std::byte> incoming_;
+  std::deque<Incoming> incoming_;  ///< in the order in which they have begun
+  std::vector<bool> late_;         ///< ranks of which one has begun and is not there
+  std::vector<std::byte> spare_;   ///< memory of the last one
 };
 
 }  // namespace

@@ -6,7 +6,10 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include <poll.h>
 #include <sys/prctl.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 
 #include "host/mpi/mpi_library.hpp"
 #include "host/mpi/mpi_postbox.hpp"
@@ -18,6 +21,7 @@ namespace {
 
 constexpr int kExitDevice = 6;
 constexpr std::chrono::seconds kFarewell(10);  ///< longest wait for ranks at the end
+constexpr int kAbortMs = 10000;                ///< longest wait for a launcher to end its job
 
 bool has_launcher() {
   constexpr std::array kMarks = {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK"};
@@ -25,6 +29,30 @@ bool has_launcher() {
     if (std::getenv(mark) != nullptr) return true;
   }
   return false;
+}
+
+/// Sees to it that the launcher ends, and with it its ranks (Ranks::Ranks): launchers have been
+/// seen to deadlock when told to end their job. A process of its own, which keeps nothing open and
+/// outlives this one; it is gone as soon as the launcher is.
+void watch_end(pid_t launcher) {
+  const int handle = static_cast<int>(syscall(SYS_pidfd_open, launcher, 0));
+  if (handle < 0 || fork() != 0) return;
+  constexpr int kKept = 3;
+  setsid();
+  if (dup2(handle, kKept) == kKept) {
+    close_range(0, kKept - 1, 0);
+    close_range(kKept + 1, ~0U, 0);
+    pollfd end{kKept, POLLIN, 0};
+    if (poll(&end, 1, kAbortMs) == 0) syscall(SYS_pidfd_send_signal, kKept, SIGKILL, nullptr, 0);
+  }
+  _exit(0);
+}
+
+/// Ends the whole job, at once if the launcher can.
+[[noreturn]] void end_job(pid_t launcher) {
+  watch_end(launcher);
+  MPI_Abort(MPI_COMM_WORLD, kExitDevice);
+  _exit(kExitDevice);
 }
 
 /// True if all other ranks have said good-bye.
@@ -54,6 +82,7 @@ Ranks::Ranks() {
   int initialised = 0;
   MPI_Initialized(&initialised);
   if (initialised != 0 || !has_launcher()) return;
+  launcher_ = getppid();
   // A launcher that is killed takes its ranks along.
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   // Reading another rank's memory is forbidden in many containers, and MPI complains at length.
@@ -68,7 +97,7 @@ Ranks::Ranks() {
 
 Ranks::~Ranks() {
   if (!joined_) return;
-  if (rank_ == 0 && ranks_ > 1 && !dismiss(ranks_)) MPI_Abort(MPI_COMM_WORLD, kExitDevice);
+  if (rank_ == 0 && ranks_ > 1 && !dismiss(ranks_)) end_job(launcher_);
   MPI_Finalize();
 }
 
@@ -83,7 +112,7 @@ int Ranks::serve() const {
 }
 
 void Ranks::abandon() const {
-  if (joined_) MPI_Abort(MPI_COMM_WORLD, kExitDevice);
+  if (joined_) end_job(launcher_);
 }
 
 }  // namespace gridrt

@@ -28,6 +28,7 @@ class Ranks {
 
  private:
   bool joined_ = false;
+  int launcher_ = 0;  ///< process that started this one
   int rank_ = 0;
   int ranks_ = 1;
 };

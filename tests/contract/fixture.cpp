@@ -5,6 +5,7 @@
 #include <map>
 
 #include "host/driver/image_options.hpp"
+#include "host/mpi/connect.hpp"
 #include "tests/adversarial/bench.hpp"
 #include "tests/adversarial/devices.hpp"
 
@@ -23,13 +24,22 @@ std::map<std::string, protocol::CapabilitiesReport>& known() {
   return map;
 }
 
+/// As few groups as mpi's ranks can be split into, but more than one if they can.
+int groups_of_ranks() {
+  const int job = ranks_of_this_job();
+  const int ranks = job > 0 ? job : kDefaultRanks;
+  int groups = ranks > 1 ? 2 : 1;
+  while (ranks % groups != 0) ++groups;
+  return groups;
+}
+
 }  // namespace
 
 std::vector<std::string> contract_devices() {
   std::vector<std::string> names = adversarial::devices_under_test();
   for (const std::string& name : adversarial::devices_under_test()) {
     if (name == "omp") names.insert(names.end(), {"omp+pes", "omp+paper"});
-    if (name == "mpi") names.emplace_back("mpi+paper");
+    if (name == "mpi") names.insert(names.end(), {"mpi+paper", "mpi+groups"});
   }
   return names;
 }
@@ -38,7 +48,12 @@ std::unique_ptr<Device> Contract::open(DeviceOptions options) {
   const std::string& name = GetParam();
   const std::size_t cut = name.find('+');
   options.name = name.substr(0, cut);
-  if (cut != std::string::npos) options.schedule = name.substr(cut + 1);
+  const std::string way = cut == std::string::npos ? "" : name.substr(cut + 1);
+  if (way == "groups") {
+    options.groups = groups_of_ranks();
+  } else {
+    options.schedule = way;
+  }
   auto device = open_device(options);
   if (!device) {
     ADD_FAILURE() << device.error().message;

@@ -18,7 +18,7 @@ namespace gridrt::contract {
 bool same(const Hit& a, const Hit& b);
 
 /// The devices under test (adversarial/devices.hpp), and each schedule that one has besides its
-/// default: NAME or NAME+SCHEDULE.
+/// default: NAME or NAME+SCHEDULE; mpi+groups has its ranks in groups.
 std::vector<std::string> contract_devices();
 
 /// A test of one device.

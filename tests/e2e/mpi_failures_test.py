@@ -55,7 +55,8 @@ class Failures(ProgramTest):
 
     def expect_end(self, job, ranks):
         """What a job of one's own says when it has ended. PMIx 4.2 now and then deadlocks within a
-        mpirun whose ranks have all ended in disorder; that is none of ours to mend."""
+        mpirun whose ranks have all ended in disorder; where none of them has given up before, that
+        is none of ours to mend."""
         self.assertTrue(self.gone(ranks))
         try:
             return job.communicate(timeout=SLACK)[1]
@@ -109,17 +110,19 @@ class Failures(ProgramTest):
         self.assertTrue(self.gone(family))
 
     def test_a_rank_of_ones_own_job_hangs(self):
-        for _ in range(3):
+        for _ in range(6):
             job, family, ranks = self.under_mpirun()
             os.kill(max(ranks), signal.SIGSTOP)
             self.assertTrue(wait_until(lambda: len(ranks_of(job.pid, "gridrt-host")) < 4,
                                        2 * LIMIT + SLACK))
-            words = self.expect_end(job, ranks)
+            words = job.communicate(timeout=LIMIT + SLACK)[1]
             self.assertEqual(words.count("gridrt-host: "), 1, words)
             self.assertIn("silent for 10000 ms", words)
             self.assertTrue(self.gone(family))
-            # Open MPI's launcher crashes at times in its own clean-up, when its job has ended.
-            if job.returncode != -signal.SIGSEGV or "PMIx_server_finalize" not in words:
+            # Open MPI's launcher crashes at times in its own clean-up, when its job has ended, or
+            # hangs, and is killed by ours.
+            crashed = job.returncode == -signal.SIGSEGV and "PMIx_server_finalize" in words
+            if not crashed and job.returncode != -signal.SIGKILL:
                 break
         self.assertEqual(job.returncode, 6, words)
 
