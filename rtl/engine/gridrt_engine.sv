@@ -123,7 +123,7 @@ module gridrt_engine #(
       .data_i({set_p0, set_d, set_ignore, set_any, set_miss})
   );
 
-  // The ray that gets a slot next. PEs and units learn a clock late of slots and limits.
+  // The ray that gets a slot next, held a clock longer: PEs and units learn late of slots and limits.
   gridrt_hold #(
       .WIDTH(START_W + 7 * B + ID_W + 5)
   ) u_start (
@@ -260,7 +260,6 @@ module gridrt_engine #(
       .interrupt_i(interrupt_q),
       .start_valid_i(start_valid),
       .start_ready_o(start_ready),
-      .start_slot_i(alloc.slot),
       .start_i(start),
       .few_i(few),
       .none_i(none),

@@ -19,10 +19,9 @@ module gridrt_walk #(
     input  gridrt_state_pkg::grid_t                              grid_i,
     input  gridrt_pkg::slot_event_t                              alloc_i,
     input  gridrt_pkg::interrupt_t                               interrupt_i,
-    // A ray starts in the unit of its slot.
+    // A ray starts in the unit of its slot; the slot and what it starts from come a clock later.
     input  logic                    [  TUS-1:0]                  start_valid_i,
     output logic                    [  TUS-1:0]                  start_ready_o,
-    input  logic                    [SLOT_W-1:0]                 start_slot_i,
     input  gridrt_state_pkg::start_t                             start_i,
     // By slot: fewer than the tasks wanted ahead are pending; none is.
     input  logic                    [SLOTS-1:0]                  few_i,
@@ -76,6 +75,14 @@ module gridrt_walk #(
       .data_o(block_data)
   );
 
+  // Units begin a clock after the slot is taken: who gets a ray depends on much, far away.
+  logic [TUS-1:0] starts, unit_ready;
+  assign start_ready_o = unit_ready & ~starts;
+  always_ff @(posedge clk_i or negedge rst_ni) begin
+    if (!rst_ni) starts <= '0;
+    else starts <= start_valid_i;
+  end
+
   for (genvar t = 0; t < TUS; t++) begin : gen_unit
     logic [COUNT-1:0] few, none;
     for (genvar s = 0; s < COUNT; s++) begin : gen_slot
@@ -93,9 +100,9 @@ module gridrt_walk #(
         .clk_i,
         .rst_ni,
         .grid_i,
-        .start_valid_i(start_valid_i[t]),
-        .start_ready_o(start_ready_o[t]),
-        .start_slot_i,
+        .start_valid_i(starts[t]),
+        .start_ready_o(unit_ready[t]),
+        .start_slot_i(alloc_i.slot),
         .start_i,
         .few_i(few),
         .idle_i(none),

@@ -31,13 +31,17 @@ module gridrt_setup_block #(
   assign even_clock = enable_i && odd_i;
   assign odd_clock  = enable_i && !odd_i;
 
-  // 11-14: x + stride_y y + stride_z z, one product a clock.
+  // 11-14: x + stride_y y + stride_z z, one product a clock, y's first. Its factors are chosen a clock
+  // before: a multiplier is far from what it takes.
   logic [2:0] s4_neg, s6_neg, s8_neg, s10_neg;
-  logic [2:0][AXIS_W-3:0] s11_block;
-  logic [AXIS_W-3:0] factor;
+  logic [2:0][AXIS_W-3:0] block;
+  logic [AXIS_W-3:0] s11_x, s11_z, factor;
   logic [BLOCK_W-1:0] stride, s12_product, s13_sum, s14_block;
-  assign factor = odd_i ? s11_block[1] : s11_block[2];
-  assign stride = odd_i ? stride_i[1] : stride_i[2];
+  always_comb begin
+    for (int unsigned a = 0; a < 3; a++) begin
+      block[a] = s10_neg[a] ? half_blocks_i[a][AXIS_W-3:0] + ~s10_block_i[a] : s10_block_i[a];
+    end
+  end
   always_ff @(posedge clk_i) begin
     if (even_clock) begin
       s4_neg <= s2_neg_i;
@@ -47,13 +51,13 @@ module gridrt_setup_block #(
       s14_block <= s13_sum + s12_product;
     end
     if (odd_clock) begin
-      for (int unsigned a = 0; a < 3; a++) begin
-        s11_block[a] <= s10_neg[a] ? half_blocks_i[a][AXIS_W-3:0] + ~s10_block_i[a]
-                                   : s10_block_i[a];
-      end
-      s13_sum <= BLOCK_W'(s11_block[0]) + s12_product;
+      s11_x <= block[0];
+      s11_z <= block[2];
+      s13_sum <= BLOCK_W'(s11_x) + s12_product;
     end
     if (enable_i) begin
+      factor <= odd_i ? s11_z : block[1];
+      stride <= odd_i ? stride_i[2] : stride_i[1];
       s12_product <= factor * stride;
     end
   end

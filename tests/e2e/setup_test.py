@@ -20,14 +20,21 @@ COMMANDS = {
     "dpkg-query": 'cat "$STATE/installed"',
     "apt-cache": 'cat "$STATE/offers"',
     "apt-get": '''echo "apt-get $*" >>"$STATE/log"
+if [[ $1 == indextargets ]]; then cat "$STATE/sources"; exit 0; fi
 for word in "$@"; do
   if [[ -e $STATE/broken-$word ]]; then exit 100; fi
+  if [[ $word == Dir::Cache=* ]]; then echo >"${word#*=}/archives/placer_0.7-1_amd64.deb"; fi
   if [[ $word == clang-19=* || $word == cmake=* ]]; then
     sed -i "/^${word%%=*} /d" "$STATE/installed"
     echo "${word%%=*} installed ${word#*=}" >>"$STATE/installed"
   fi
 done''',
 }
+COMMANDS["dpkg-deb"] = '''if [[ $1 == --field ]]; then echo 0.7-1; exit 0; fi
+mkdir -p "$3"/usr/{bin,lib64,share/nextpnr}
+printf '#!/bin/bash\\nexec "${@:3}"\\n' >"$3/usr/lib64/ld-linux-x86-64.so.2"
+printf '#!/bin/bash\\necho "placer $* $PYTHONHOME"\\n' >"$3/usr/bin/placer"
+chmod +x "$3"/usr/lib64/* "$3"/usr/bin/*'''
 # python3 -m venv makes a stand-in for the environment's python, whose pip keeps a list and the log.
 COMMANDS["python3"] = '''echo "python3 $*" >>"$STATE/log"
 if [[ -e $STATE/broken-venv ]]; then exit 1; fi
@@ -78,7 +85,8 @@ class Setup(unittest.TestCase):
 
     def run_setup(self, *arguments, prefix=()):
         for tools in ("bash", "dirname", "awk", "sed", "env", "cat", "setpriv",
-                      "grep", "mkdir", "cp", "chmod"):
+                      "grep", "mkdir", "cp", "chmod", "head", "tail", "mktemp", "rm", "ln",
+                      "realpath"):
             link = self.root / "bin" / tools
             if not link.exists():
                 link.symlink_to(shutil.which(tools))
@@ -89,7 +97,8 @@ class Setup(unittest.TestCase):
             [*prefix, str(self.root / "tools" / "setup"), *arguments], text=True, check=False,
             capture_output=True, stdin=subprocess.DEVNULL,
             env={"PATH": str(self.root / "bin"), "STATE": str(self.root / "state"),
-                 "GRIDRT_OS_RELEASE": str(self.root / "os-release")})
+                 "GRIDRT_OS_RELEASE": str(self.root / "os-release"),
+                 "GRIDRT_NEXTPNR_TABLES": str(self.root / "tables")})
         log = (self.root / "state" / "log").read_text(encoding="utf-8")
         return done.returncode, done.stdout + done.stderr, log
 
@@ -175,6 +184,33 @@ class Setup(unittest.TestCase):
         self.assertEqual(self.run_setup("hardware")[2], log)  # nothing more the second time
         self.write("state/pip", "soft-core==1.0\nYoWASP-yosys==0.70\nz3-solver==5.3\n")
         self.assertRegex(self.run_setup("hardware")[2], r"retries 2 z3-solver==5.4\n$")
+
+    def with_placer(self, sources="http://mirror/debian\n"):
+        self.write("tools/versions.txt", VERSIONS + "[debian-13]\nplacer=0.7-*\n")
+        self.write("state/sources", sources)
+
+    def test_the_placer_is_unpacked_with_its_own_libraries(self):
+        self.with_placer()
+        code, output, log = self.run_setup("hardware")
+        self.assertEqual(code, 0, output)
+        self.assertRegex(log, r"--download-only install placer=0\.7-\*\n")
+        placer = self.root / "build" / "nextpnr" / "bin" / "placer"
+        done = subprocess.run([placer, "--seed", "1"], text=True, capture_output=True, check=True,
+                              env={"PATH": "/usr/bin:/bin"})
+        self.assertEqual(done.stdout, f"placer --seed 1 {self.root}/build/nextpnr/usr\n")
+        self.assertTrue((self.root / "tables").is_dir())
+        self.assertEqual(self.run_setup("hardware")[2], log)  # nothing more the second time
+
+    def test_a_placer_that_cannot_be_had_is_reported(self):
+        self.with_placer()
+        self.write("state/broken-placer=0.7-*", "")
+        code, output, _ = self.run_setup("hardware")
+        self.assertEqual(code, 1)
+        self.assertIn("could not download placer=0.7-*", output)
+        self.with_placer(sources="")
+        code, output, _ = self.run_setup("hardware")
+        self.assertEqual(code, 1)
+        self.assertIn("no package source of Debian 12", output)
 
     def test_reports_an_environment_that_cannot_be_made(self):
         self.remove_environment()
