@@ -206,7 +206,8 @@ Result<void> Bench::trace(std::span<const Segment> segments, Query query,
   return {};
 }
 
-std::vector<Hit> Bench::check_rays(std::span<const Ray> rays, Tally& tally) const {
+std::vector<Hit> Bench::check_rays(std::span<const Ray> rays, Tally& tally,
+                                   std::span<const Segment> also) const {
   std::vector<Segment> segments;
   std::vector<truth::Segment> expected;
   segments.reserve(rays.size());
@@ -216,7 +217,7 @@ std::vector<Hit> Bench::check_rays(std::span<const Ray> rays, Tally& tally) cons
       tally.add("refused: " + describe(ray) + ": " + valid.error().message);
     }
     segments.push_back(make_segment(lattice_, ray));
-    if (!is_traced(segments.size() - 1, rays.size())) {
+    if (!is_traced(segments.size() - 1, rays.size() + also.size())) {
       expected.emplace_back();
       continue;
     }
@@ -225,6 +226,10 @@ std::vector<Hit> Bench::check_rays(std::span<const Ray> rays, Tally& tally) cons
       tally.add(fmt::format("{}\n  ray {}\n  segment {}\n  truth: {}", describe(configuration_),
                             describe(ray), describe(segments.back()), wrong));
     }
+  }
+  for (const Segment& s : also) {
+    segments.push_back(s);
+    expected.push_back(to_truth(s));
   }
   return check(segments, expected, tally);
 }

@@ -54,8 +54,10 @@ class Bench {
   [[nodiscard]] const SceneImages& images() const { return *images_; }
 
   /// Rays in scene units: end points, parameters, closest hits (id, t, u, v) and any hits are all
-  /// compared. Returns the device's closest hits.
-  std::vector<Hit> check_rays(std::span<const Ray> rays, Tally& tally) const;
+  /// compared. Returns the device's closest hits. `also`: segments on the lattice that follow them
+  /// in the same batch; a device that loads a scene in chunks does so once for all.
+  std::vector<Hit> check_rays(std::span<const Ray> rays, Tally& tally,
+                              std::span<const Segment> also = {}) const;
 
   /// Segments on the lattice, as they are.
   std::vector<Hit> check_segments(std::span<const Segment> segments, Tally& tally) const;

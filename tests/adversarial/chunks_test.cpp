@@ -81,11 +81,11 @@ TEST(Case36, RandomScenesInManyChunks) {
     with_bench(scene, tiny_configuration(random, bits), [&](const Bench& bench) {
       chunks += bench.images().chunks.size();
       most = std::max(most, bench.images().chunks.size());
-      bench.check_rays(any_rays(scene, bench.truth().lattice(), bench.grid(), 150, random), tally);
+      const auto rays = any_rays(scene, bench.truth().lattice(), bench.grid(), 150, random);
       auto segments = exact_segments(bench.truth(), 150, random);
       for (const Segment& s : face_segments(bench.images(), 150, random)) segments.push_back(s);
       ignore_some(segments, std::max<std::size_t>(1, scene.triangles.size()), random);
-      bench.check_segments(segments, tally);
+      bench.check_rays(rays, tally, segments);
     });
   }
   EXPECT_GT(chunks, 400U);

@@ -10,8 +10,8 @@ namespace {
 
 void check_all_kinds(const Scene& scene, int bits, std::size_t rays, Random& random, Tally& tally) {
   with_bench(scene, random_configuration(random, bits), [&](const Bench& bench) {
-    bench.check_rays(any_rays(scene, bench.truth().lattice(), bench.grid(), rays, random), tally);
-    bench.check_segments(exact_segments(bench.truth(), rays / 2, random), tally);
+    const auto any = any_rays(scene, bench.truth().lattice(), bench.grid(), rays, random);
+    bench.check_rays(any, tally, exact_segments(bench.truth(), rays / 2, random));
   });
 }
 
