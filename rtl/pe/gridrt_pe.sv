@@ -53,8 +53,8 @@ module gridrt_pe #(
   localparam int unsigned SLOT_INDEX_W = (SLOTS > 1) ? $clog2(SLOTS) : 1;
   localparam int unsigned TRI_INDEX_W = $clog2(TRIS);
   localparam int unsigned VERT_INDEX_W = $clog2(VERTS);
-  // Tests on their way and events that wait: the way takes 12 clocks.
-  localparam int unsigned ROOM = 16;
+  // Tests on their way and events that wait: the way takes 16 clocks.
+  localparam int unsigned ROOM = 24;
   localparam int unsigned ROOM_W = $clog2(ROOM + 1);
   // Section kinds of the protocol.
   localparam logic [7:0] REFERENCES = 8'd3;

@@ -6,7 +6,11 @@
 //
 // Widths at B = 17: differences 18 bits; minors of D x E2 36 bits, those of T x E1 35 (both vectors
 // start at V0); volumes of four points of the box at most 2 (2^B - 1)^3, so u, v, w and tn take
-// 3 B + 2 bits with their sign, and det, which is u + v + w, two more. Where all have one sign, det is below 2^(3 B + 2).
+// 3 B + 2 bits with their sign. det is u + v + w: where all have one sign, it is below 2^(3 B + 2), and
+// elsewhere there is no hit, whatever is left of det in one bit more.
+//
+// Minors and sums of products are made in chains of slices (gridrt_product_pair): the axes follow each
+// other by a clock.
 module gridrt_triangle #(
     parameter int unsigned B = 17,
     parameter int unsigned META = 8,  // bits that travel along
@@ -25,11 +29,8 @@ module gridrt_triangle #(
     output logic [MAG_W-1:0]     det_o,    // |det| of a hit
     output logic [META-1:0]      meta_o
 );
-  localparam int unsigned D_W = B + 1;  // differences
-  localparam int unsigned Q_W = 2 * B + 2;  // minors of D x E2
-  localparam int unsigned R_W = 2 * B + 1;  // minors of T x E1
-  localparam int unsigned S_W = 3 * B + 4;  // sums
-  localparam int unsigned STAGES = 8;
+  localparam int unsigned S_W = 3 * B + 3;  // sums
+  localparam int unsigned STAGES = 12;
 
   if (B < 4 || B > 17) begin : gen_illegal
     $error("gridrt_triangle: B must be 4 to 17");
@@ -49,163 +50,152 @@ module gridrt_triangle #(
     end
   end
 
-  // 1: differences.
-  logic signed [D_W-1:0] e1_x, e1_y, e1_z, e2_x, e2_y, e2_z, t_x, t_y, t_z, d_x, d_y, d_z;
+  // 1: differences; what follows is that of tests before, as long as somebody needs it.
+  logic [6:1][2:0][17:0] e1, e2, t, d;  // clock, axis
+  function automatic logic [17:0] difference(input logic [B-1:0] a, input logic [B-1:0] b);
+    difference = 18'(a) - 18'(b);
+  endfunction
   always_ff @(posedge clk_i) begin
-    if (valid_i) begin
-      e1_x <= $signed({1'b0, v_i[1][0]}) - $signed({1'b0, v_i[0][0]});
-      e1_y <= $signed({1'b0, v_i[1][1]}) - $signed({1'b0, v_i[0][1]});
-      e1_z <= $signed({1'b0, v_i[1][2]}) - $signed({1'b0, v_i[0][2]});
-      e2_x <= $signed({1'b0, v_i[2][0]}) - $signed({1'b0, v_i[0][0]});
-      e2_y <= $signed({1'b0, v_i[2][1]}) - $signed({1'b0, v_i[0][1]});
-      e2_z <= $signed({1'b0, v_i[2][2]}) - $signed({1'b0, v_i[0][2]});
-      t_x  <= $signed({1'b0, p0_i[0]}) - $signed({1'b0, v_i[0][0]});
-      t_y  <= $signed({1'b0, p0_i[1]}) - $signed({1'b0, v_i[0][1]});
-      t_z  <= $signed({1'b0, p0_i[2]}) - $signed({1'b0, v_i[0][2]});
-      d_x  <= $signed(d_i[0]);
-      d_y  <= $signed(d_i[1]);
-      d_z  <= $signed(d_i[2]);
+    for (int unsigned a = 0; a < 3; a++) begin
+      e1[1][a] <= difference(v_i[1][a], v_i[0][a]);
+      e2[1][a] <= difference(v_i[2][a], v_i[0][a]);
+      t[1][a]  <= difference(p0_i[a], v_i[0][a]);
+      d[1][a]  <= 18'($signed(d_i[a]));
+    end
+    e1[6:2] <= e1[5:1];
+    e2[6:2] <= e2[5:1];
+    t[6:2]  <= t[5:1];
+    d[6:2]  <= d[5:1];
+  end
+
+  // 4, 5 and 6: minors of D x E2 and T x E1 on the axes x, y and z. 7, 8 and 9: det, u, v and tn on the
+  // first axis, on two, on all.
+  logic [2:0][53:0] det, u, v, tn;
+  logic [2:0] unused;
+  for (genvar a = 0; a < 3; a++) begin : gen_axis
+    localparam int unsigned NEXT = (a + 1) % 3;
+    localparam int unsigned LAST = (a + 2) % 3;
+    logic [53:0] q, r;
+    gridrt_product_pair #(
+        .SUBTRACT(1'b1)
+    ) u_q (
+        .clk_i,
+        .a_i({d[1+a][LAST], d[1+a][NEXT]}),
+        .b_i({e2[1+a][NEXT], e2[1+a][LAST]}),
+        .sum_i('0),
+        .sum_o(q)
+    );
+    gridrt_product_pair #(
+        .SUBTRACT(1'b1)
+    ) u_r (
+        .clk_i,
+        .a_i({t[1+a][LAST], t[1+a][NEXT]}),
+        .b_i({e1[1+a][NEXT], e1[1+a][LAST]}),
+        .sum_i('0),
+        .sum_o(r)
+    );
+    gridrt_product_pair #(
+        .CHAIN(a > 0)
+    ) u_det (
+        .clk_i,
+        .a_i({2{e1[4+a][a]}}),
+        .b_i(q[35:0]),
+        .sum_i((a > 0) ? det[(a > 0) ? a - 1 : 0] : '0),
+        .sum_o(det[a])
+    );
+    gridrt_product_pair #(
+        .CHAIN(a > 0)
+    ) u_u (
+        .clk_i,
+        .a_i({2{t[4+a][a]}}),
+        .b_i(q[35:0]),
+        .sum_i((a > 0) ? u[(a > 0) ? a - 1 : 0] : '0),
+        .sum_o(u[a])
+    );
+    gridrt_product_pair #(
+        .CHAIN(a > 0)
+    ) u_v (
+        .clk_i,
+        .a_i({2{d[4+a][a]}}),
+        .b_i(r[35:0]),
+        .sum_i((a > 0) ? v[(a > 0) ? a - 1 : 0] : '0),
+        .sum_o(v[a])
+    );
+    gridrt_product_pair #(
+        .CHAIN(a > 0)
+    ) u_tn (
+        .clk_i,
+        .a_i({2{e2[4+a][a]}}),
+        .b_i(r[35:0]),
+        .sum_i((a > 0) ? tn[(a > 0) ? a - 1 : 0] : '0),
+        .sum_o(tn[a])
+    );
+    assign unused[a] = ^{q, r, det[a], u[a], v[a], tn[a]};
+  end
+
+  // 10: out of the slices, which are far away.
+  logic signed [S_W-1:0] det_10, u_10, v_10, tn_10;
+  always_ff @(posedge clk_i) begin
+    if (valid[9]) begin
+      det_10 <= S_W'(det[2]);
+      u_10 <= S_W'(u[2]);
+      v_10 <= S_W'(v[2]);
+      tn_10 <= S_W'(tn[2]);
     end
   end
 
-  // 2: products of the minors.
-  logic signed [2*D_W-1:0] q_yz, q_zy, q_zx, q_xz, q_xy, q_yx;
-  logic signed [2*D_W-1:0] r_yz, r_zy, r_zx, r_xz, r_xy, r_yx;
-  logic [2:0][D_W-1:0] e1_2, e2_2, t_2, d_2;
-  always_ff @(posedge clk_i) begin
-    if (valid[1]) begin
-      q_yz <= d_y * e2_z;
-      q_zy <= d_z * e2_y;
-      q_zx <= d_z * e2_x;
-      q_xz <= d_x * e2_z;
-      q_xy <= d_x * e2_y;
-      q_yx <= d_y * e2_x;
-      r_yz <= t_y * e1_z;
-      r_zy <= t_z * e1_y;
-      r_zx <= t_z * e1_x;
-      r_xz <= t_x * e1_z;
-      r_xy <= t_x * e1_y;
-      r_yx <= t_y * e1_x;
-      e1_2 <= {e1_z, e1_y, e1_x};
-      e2_2 <= {e2_z, e2_y, e2_x};
-      t_2  <= {t_z, t_y, t_x};
-      d_2  <= {d_z, d_y, d_x};
-    end
-  end
-
-  // 3: minors, cut to the bits that they can take.
-  logic signed [Q_W-1:0] q_x, q_y, q_z;
-  logic signed [R_W-1:0] r_x, r_y, r_z;
-  logic [2:0][D_W-1:0] e1_3, e2_3, t_3, d_3;
-  always_ff @(posedge clk_i) begin
-    if (valid[2]) begin
-      q_x  <= Q_W'(q_yz - q_zy);
-      q_y  <= Q_W'(q_zx - q_xz);
-      q_z  <= Q_W'(q_xy - q_yx);
-      r_x  <= R_W'(r_yz - r_zy);
-      r_y  <= R_W'(r_zx - r_xz);
-      r_z  <= R_W'(r_xy - r_yx);
-      e1_3 <= e1_2;
-      e2_3 <= e2_2;
-      t_3  <= t_2;
-      d_3  <= d_2;
-    end
-  end
-
-  // 4: products of the determinants.
-  logic signed [D_W+Q_W-1:0] det_x, det_y, det_z, u_x, u_y, u_z;
-  logic signed [D_W+R_W-1:0] v_x, v_y, v_z, tn_x, tn_y, tn_z;
-  always_ff @(posedge clk_i) begin
-    if (valid[3]) begin
-      det_x <= $signed(e1_3[0]) * q_x;
-      det_y <= $signed(e1_3[1]) * q_y;
-      det_z <= $signed(e1_3[2]) * q_z;
-      u_x   <= $signed(t_3[0]) * q_x;
-      u_y   <= $signed(t_3[1]) * q_y;
-      u_z   <= $signed(t_3[2]) * q_z;
-      v_x   <= $signed(d_3[0]) * r_x;
-      v_y   <= $signed(d_3[1]) * r_y;
-      v_z   <= $signed(d_3[2]) * r_z;
-      tn_x  <= $signed(e2_3[0]) * r_x;
-      tn_y  <= $signed(e2_3[1]) * r_y;
-      tn_z  <= $signed(e2_3[2]) * r_z;
-    end
-  end
-
-  // 5 and 6: sums.
-  logic signed [S_W-1:0] det_5, det_z5, u_5, u_z5, v_5, v_z5, tn_5, tn_z5;
-  logic signed [S_W-1:0] det_6, u_6, v_6, tn_6;
-  always_ff @(posedge clk_i) begin
-    if (valid[4]) begin
-      det_5  <= S_W'(det_x) + S_W'(det_y);
-      det_z5 <= S_W'(det_z);
-      u_5    <= S_W'(u_x) + S_W'(u_y);
-      u_z5   <= S_W'(u_z);
-      v_5    <= S_W'(v_x) + S_W'(v_y);
-      v_z5   <= S_W'(v_z);
-      tn_5   <= S_W'(tn_x) + S_W'(tn_y);
-      tn_z5  <= S_W'(tn_z);
-    end
-    if (valid[5]) begin
-      det_6 <= det_5 + det_z5;
-      u_6   <= u_5 + u_z5;
-      v_6   <= v_5 + v_z5;
-      tn_6  <= tn_5 + tn_z5;
-    end
-  end
-
-  // 7: what is left of det.
-  logic signed [S_W-1:0] det_7, tn_7, uv_7, rest_7;
+  // 11: what is left of det.
+  logic signed [S_W-1:0] det_11, tn_11, uv_11, rest_11;
   logic u_zero, u_minus, v_zero, v_minus;
   always_ff @(posedge clk_i) begin
-    if (valid[6]) begin
-      det_7   <= det_6;
-      tn_7    <= tn_6;
-      uv_7    <= u_6 + v_6;
-      rest_7  <= det_6 - tn_6;
-      u_zero  <= u_6 == '0;
-      u_minus <= u_6[S_W-1];
-      v_zero  <= v_6 == '0;
-      v_minus <= v_6[S_W-1];
+    if (valid[10]) begin
+      det_11 <= det_10;
+      tn_11 <= tn_10;
+      uv_11 <= u_10 + v_10;
+      rest_11 <= det_10 - tn_10;
+      u_zero <= u_10 == '0;
+      u_minus <= u_10[S_W-1];
+      v_zero <= v_10 == '0;
+      v_minus <= v_10[S_W-1];
     end
   end
 
-  // 8: w, magnitudes and the signs that are known.
-  logic signed [S_W-1:0] w_8;
-  logic [MAG_W-1:0] det_8, tn_8;
-  logic good_8, minus_8;
+  // 12: w, magnitudes and the signs that are known.
+  logic signed [S_W-1:0] w_12;
+  logic [MAG_W-1:0] det_12, tn_12;
+  logic good_12, minus_12;
   logic [MAG_W-1:0] det_size, tn_size;
   gridrt_add_sub #(
       .WIDTH(MAG_W)
   ) i_det_size (
-      .sub_i(det_7[S_W-1]),
+      .sub_i(det_11[S_W-1]),
       .a_i  ('0),
-      .b_i  (det_7[MAG_W-1:0]),
+      .b_i  (det_11[MAG_W-1:0]),
       .sum_o(det_size)
   );
   gridrt_add_sub #(
       .WIDTH(MAG_W)
   ) i_tn_size (
-      .sub_i(tn_7[S_W-1]),
+      .sub_i(tn_11[S_W-1]),
       .a_i  ('0),
-      .b_i  (tn_7[MAG_W-1:0]),
+      .b_i  (tn_11[MAG_W-1:0]),
       .sum_o(tn_size)
   );
   always_ff @(posedge clk_i) begin
-    if (valid[7]) begin
-      w_8 <= det_7 - uv_7;
-      det_8 <= det_size;
-      tn_8 <= tn_size;
-      minus_8 <= det_7[S_W-1];
-      good_8 <= det_7 != '0 && (u_zero || u_minus == det_7[S_W-1]) &&
-          (v_zero || v_minus == det_7[S_W-1]) && (tn_7 == '0 || tn_7[S_W-1] == det_7[S_W-1]) &&
-          (rest_7 == '0 || rest_7[S_W-1] == det_7[S_W-1]);
+    if (valid[11]) begin
+      w_12 <= det_11 - uv_11;
+      det_12 <= det_size;
+      tn_12 <= tn_size;
+      minus_12 <= det_11[S_W-1];
+      good_12 <= det_11 != '0 && (u_zero || u_minus == det_11[S_W-1]) &&
+          (v_zero || v_minus == det_11[S_W-1]) && (tn_11 == '0 || tn_11[S_W-1] == det_11[S_W-1]) &&
+          (rest_11 == '0 || rest_11[S_W-1] == det_11[S_W-1]);
     end
   end
 
   assign valid_o = valid[STAGES];
-  assign hit_o = good_8 && (w_8 == '0 || w_8[S_W-1] == minus_8);
-  assign det_o = det_8;
-  assign tn_o = tn_8;
+  assign hit_o = good_12 && (w_12 == '0 || w_12[S_W-1] == minus_12);
+  assign det_o = det_12;
+  assign tn_o = tn_12;
   assign meta_o = meta[STAGES];
 endmodule

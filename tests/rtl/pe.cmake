@@ -5,6 +5,17 @@ foreach(bits 12 14 17)
   gridrt_rtl_bench(rtl_quotient_${bits} TOP gridrt_quotient PARAMETERS B=${bits}
                    SOURCES quotient_bench.cpp)
 endforeach()
+# The test as it is on an ECP5: of its multipliers and adders.
+set(dsp ${CMAKE_CURRENT_BINARY_DIR}/ecp5)
+add_custom_command(OUTPUT ${dsp}/MULT18X18D.sv ${dsp}/ALU54B.sv
+  COMMAND ${Python3_EXECUTABLE} -B ${CMAKE_CURRENT_LIST_DIR}/ecp5/make_dsp.py ${dsp}
+  DEPENDS ${CMAKE_CURRENT_LIST_DIR}/ecp5/make_dsp.py VERBATIM)
+add_custom_command(OUTPUT ${dsp}/gridrt_ecp5_slice.sv
+  COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/rtl/pe/make_ecp5_slice.py ${dsp}/gridrt_ecp5_slice.sv
+  DEPENDS ${PROJECT_SOURCE_DIR}/rtl/pe/make_ecp5_slice.py VERBATIM)
+gridrt_rtl_bench(rtl_triangle_ecp5 TOP gridrt_triangle PARAMETERS B=17 META=32 DEFINES GRIDRT_ECP5
+                 FILES ${dsp}/MULT18X18D.sv ${dsp}/ALU54B.sv ${dsp}/gridrt_ecp5_slice.sv
+                 SOURCES triangle_bench.cpp)
 gridrt_rtl_bench(rtl_resolve_17 TOP gridrt_resolve PARAMETERS B=17 TRIS=64 SLOTS=64 DIVIDERS=3
                  SOURCES resolve_bench.cpp)
 gridrt_rtl_bench(rtl_resolve_14 TOP gridrt_resolve PARAMETERS B=14 TRIS=200 SLOTS=5 DIVIDERS=2

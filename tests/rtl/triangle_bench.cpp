@@ -14,7 +14,7 @@ namespace gridrt::rtl {
 namespace {
 
 constexpr int kBits = GRIDRT_RTL_B;
-constexpr int kLatency = 8;
+constexpr int kLatency = 12;
 
 class Triangle : public testing::Test {
  protected:
