@@ -17,6 +17,7 @@
 #include "hal/frame.hpp"
 #include "host/image/image.hpp"
 #include "tests/rtl/clocked.hpp"
+#include "tests/rtl/payloads.hpp"
 
 namespace gridrt::rtl {
 
@@ -126,12 +127,6 @@ struct Answer {
 /// Takes the frames out of from_device, which must hold nothing else unless `garbage` is given.
 std::vector<Answer> take_answers(ShellBench& bench, std::size_t* garbage = nullptr);
 
-/// Payloads.
-std::vector<std::byte> load_payload(const protocol::LoadHead& head,
-                                    std::span<const std::byte> bytes);
-std::vector<std::byte> commit_payload(std::uint64_t mask);
-std::vector<std::byte> trace_payload(std::span<const protocol::RayCompact> rays, std::uint32_t tag);
-
 /// Sends a section in pieces of at most `piece` bytes (a multiple of 4); returns the next sequence
 /// number.
 std::uint32_t send_section(ShellBench& bench, protocol::SectionKind kind, std::uint8_t pe,
@@ -147,9 +142,6 @@ std::vector<LoadedRecord> records_of(const Image& image);
 
 /// An image in the compact layout, of a scene with some hundred triangles.
 Image small_image(int bits = 17, int pes = 4);
-
-/// Rays within the box of an image.
-std::vector<protocol::RayCompact> rays_in(const Image& image, std::size_t count, unsigned seed);
 
 /// The engine's answers to these rays as the payload of a Hits frame.
 std::vector<std::byte> hits_payload(const ShellBench& bench,

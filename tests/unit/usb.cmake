@@ -9,7 +9,7 @@ if(GRIDRT_BUILD_USB AND TARGET gridrt_virtual)
     $<TARGET_PROPERTY:HIDAPI::hidraw,INTERFACE_INCLUDE_DIRECTORIES>)
   target_link_libraries(gridrt_fake_usb PUBLIC gridrt_virtual gridrt_hal PRIVATE gridrt_flags)
 
-  add_executable(unit_usb usb_faults_test.cpp usb_function_test.cpp usb_link_test.cpp
+  add_executable(unit_usb usb_faults_test.cpp usb_flash_test.cpp usb_function_test.cpp usb_link_test.cpp
     usb_usbip_test.cpp)
   target_link_libraries(unit_usb PRIVATE gridrt_fake_usb gridrt_awkward gridrt_virtual gridrt_driver
     gridrt_pe gridrt_image gridrt_scene gridrt_hal gridrt_flags GTest::gtest_main)

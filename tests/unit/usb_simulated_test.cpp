@@ -4,14 +4,19 @@
 #include <bit>
 #include <cstdlib>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "gridrt_usb.hpp"
+#include "hal/frame.hpp"
 #include "host/driver/device.hpp"
+#include "host/driver/flash_image.hpp"
 #include "host/image/image.hpp"
+#include "host/pe/capabilities.hpp"
 #include "tests/contract/awkward.hpp"
+#include "tests/unit/image_support.hpp"
 #include "tests/unit/usb_fake_bus.hpp"
 #include "tools/virtual/board.hpp"
 
@@ -21,25 +26,24 @@ namespace {
 using protocol::JournalCode;
 using Report = std::array<std::byte, protocol::kReportBytes>;
 
-const Scene& scene() {
-  static const Scene only = contract::awkward_scene(71);
-  return only;
-}
+struct Traced {
+  Scene scene;
+  Image image;
+  std::vector<Segment> segments;
+  std::vector<Hit> right;
+};
 
-std::vector<Segment> rays() {
+Traced make_traced(Scene scene) {
   ::setenv("GRIDRT_CONTRACT_RAYS", "60", 0);
-  return contract::awkward_segments(scene(), kDefaultBits, 72);
-}
-
-const Image& image() {
-  static const Image only = [] {
-    ImageOptions options;
-    options.layout = protocol::Layout::kCompact;
-    options.grid = glm::ivec3{6};
-    options.with_scene = false;
-    return build_image(scene(), options).value();
-  }();
-  return only;
+  ImageOptions options;
+  options.layout = protocol::Layout::kCompact;
+  options.grid = glm::ivec3{6};
+  options.with_scene = false;
+  Traced out{std::move(scene), {}, {}, {}};
+  out.image = build_image(out.scene, options).value();
+  out.segments = contract::awkward_segments(out.scene, kDefaultBits, 72);
+  out.right = contract::reference(out.scene, kDefaultBits, out.segments, Query::kClosestHit);
+  return out;
 }
 
 class SimulatedBoard : public testing::Test {
@@ -95,9 +99,9 @@ class SimulatedBoard : public testing::Test {
 
 TEST_F(SimulatedBoard, FeatureAndInputReportsAreTheFirmwares) {
   EXPECT_EQ(event(), JournalCode::kStarted);
-  const auto identity = get(protocol::IdentityReport::kId);
-  ASSERT_TRUE(identity);
-  EXPECT_EQ((*identity)[1], static_cast<std::byte>(protocol::kVersion));
+  const auto identity = get(protocol::IdentityReport::kId).value_or(std::vector<std::byte>{});
+  ASSERT_EQ(identity.size(), protocol::kReportBytes);
+  EXPECT_EQ(identity[1], static_cast<std::byte>(protocol::kVersion));
   EXPECT_FALSE(get(99));
 
   const protocol::ControlReport control{.idle_clocks = 777, .log = 1};
@@ -115,22 +119,46 @@ TEST_F(SimulatedBoard, FeatureAndInputReportsAreTheFirmwares) {
   EXPECT_EQ(event(5), std::nullopt);
 }
 
-TEST_F(SimulatedBoard, TracesForTheDeviceUsb) {
-  const std::vector<Segment> segments = rays();
-  const auto right = contract::reference(scene(), kDefaultBits, segments, Query::kClosestHit);
+/// Loads the image through the device usb and compares all answers with seq's; returns how often an
+/// image was sent.
+std::uint64_t right_answers(UsbFunction& function, const Traced& traced) {
   fake::bus().plug_in(function);
   auto device = open_device({.name = "usb"});
-  ASSERT_TRUE(device) << device.error().message;
-  const auto loaded = (*device)->load(image());
-  ASSERT_TRUE(loaded) << loaded.error().message;
-  std::vector<Hit> hits(segments.size());
-  const auto traced = (*device)->trace(segments, Query::kClosestHit, hits);
-  ASSERT_TRUE(traced) << traced.error().message;
+  EXPECT_TRUE(device) << device.error().message;
+  if (!device) return ~std::uint64_t{0};
+  const auto loaded = (*device)->load(traced.image);
+  EXPECT_TRUE(loaded) << loaded.error().message;
+  const std::vector<Hit> hits = contract::trace(**device, traced.segments, Query::kClosestHit);
+  const auto bits = [](double x) { return std::bit_cast<std::uint64_t>(x); };
   for (std::size_t i = 0; i < hits.size(); ++i) {
-    EXPECT_EQ(hits[i].id, right[i].id) << i;
-    EXPECT_EQ(std::bit_cast<std::uint64_t>(hits[i].t), std::bit_cast<std::uint64_t>(right[i].t));
+    EXPECT_EQ(hits[i].id, traced.right[i].id) << i;
+    EXPECT_EQ(bits(hits[i].t), bits(traced.right[i].t)) << i;
   }
   EXPECT_EQ((*device)->counters()->frames_retried, 0U);
+  return (*device)->counters()->uploads;
+}
+
+TEST_F(SimulatedBoard, TracesForTheDeviceUsb) {
+  EXPECT_EQ(right_answers(function, make_traced(contract::awkward_scene(71))), 1U);
+}
+
+TEST(SimulatedBoardWithFlash, HasItsImageWhenItIsPluggedIn) {
+  const Traced traced = make_traced(random_scene(40, 3, 0.6F));
+  const auto flash = flash_image(traced.image, board_capabilities());
+  ASSERT_TRUE(flash);
+  const auto board = make_virtual_board({.core = "sim", .flash = *flash});
+  ASSERT_TRUE(board) << board.error().message;
+  UsbFunction function(*board->endpoint, {.input = board->input});
+  ASSERT_TRUE(function.control({.request_type = 0, .request = 9, .value = 1}, {}));
+  // It hears the host at once: while it boots it would not.
+  std::vector<std::byte> frame;
+  ASSERT_TRUE(append_frame(frame, protocol::FrameType::kNoOp, protocol::Layout::kNone, 1, {}));
+  ASSERT_EQ(function.bulk_out(frame), TransferState::kDone);
+  std::array<std::byte, 512> answer{};
+  std::size_t given = 0;
+  EXPECT_EQ(function.bulk_in(answer, given, {}), TransferState::kDone);
+  EXPECT_EQ(given, frame.size());
+  EXPECT_EQ(right_answers(function, traced), 0U);
 }
 
 }  // namespace

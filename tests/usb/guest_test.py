@@ -1,8 +1,9 @@
-"""The programs on a board that a real kernel has enumerated: the bytes of seq, reports, and what
-goes wrong on a desk."""
+"""The programs on a board that a real kernel has enumerated: the bytes of seq, reports, boards that
+start from flash, and what goes wrong on a desk."""
 import json
 import pathlib
 import re
+import struct
 import subprocess
 import tempfile
 import unittest
@@ -11,6 +12,7 @@ from guest import BIN, Guest
 
 SIZE = "64x48"
 SMALL = "24x18"
+FLASHES = ("good", "flipped", "cut", "eight")  # /NAME.flash: boards that start from one
 SCRIPT = f"""
 run() {{ echo "== $1"; shift; "$@" 2>&1; echo "-- $?"; }}
 as_nobody() {{ su nobody -c "LD_LIBRARY_PATH=/lib PATH=/programs $*"; }}
@@ -55,15 +57,55 @@ run usbip-render gridrt-host /teapot.grt --size {SIZE} --device usb:over-ip -o i
 run usbip-selftest gridrt-board selftest
 echo 0 >$second
 for i in $(seq 50); do [ $(ls /dev | grep -c '^hidraw') = 2 ] && break; sleep 0.1; done
+run rtl-flash gridrt-host /cube.grt --size {SMALL} --device usb:rtl --hits rtl-cube.npy --stats rtl.json
 run rtl-render gridrt-host /teapot.grt --size {SMALL} --device usb:rtl --hits rtl.npy -o rtl.png
 gridrt-board --device usb:rtl log >/dev/null
-gridrt-board --device usb:rtl log --follow 3 >rtl-followed 2>&1 &
+gridrt-board --device usb:rtl log --follow 60 >rtl-followed 2>&1 &
 follower=$!
 sleep 1
 run rtl-selftest gridrt-board --device usb:rtl selftest
-wait $follower
+for i in $(seq 300); do grep -q SelfTest rtl-followed && break; sleep 0.1; done
+kill $follower
 run rtl-followed cat rtl-followed
+boards=$(ls /dev | grep -c '^hidraw')
+port=3241
+for f in {" ".join(FLASHES)}; do
+  gridrt-virtual-board --core seq --usbip $port --serial $f --flash /$f.flash &
+  for i in $(seq 50); do usbip --tcp-port $port list -r 127.0.0.1 >/dev/null 2>&1 && break; sleep 0.1; done
+  usbip --tcp-port $port attach -r 127.0.0.1 -b 1-1
+  port=$((port + 1)); boards=$((boards + 1))
+done
+for i in $(seq 50); do [ $(ls /dev | grep -c '^hidraw') = $boards ] && break; sleep 0.1; done
+for f in {" ".join(FLASHES)}; do
+  run $f-info gridrt-board --device usb:$f info
+  run $f-log gridrt-board --device usb:$f log
+  run $f-render gridrt-host /teapot.grt --size {SMALL} --device usb:$f --hits $f.npy -o $f.png --stats $f.json
+done
+run other-scene gridrt-host /cube.grt --size {SMALL} --device usb:good --hits cube.npy --stats cube.json
+run back-again gridrt-host /teapot.grt --size {SMALL} --device usb:good --hits back.npy --stats back.json
 """
+
+
+def crc32c(data):
+    crc = 0xFFFFFFFF
+    for byte in data:
+        crc ^= byte
+        for _ in range(8):
+            crc = crc >> 1 ^ (0x82F63B78 if crc & 1 else 0)
+    return struct.pack("<I", crc ^ 0xFFFFFFFF)
+
+
+def for_eight_pes(flash):
+    """The flash image with a header as of a board with eight PEs, and with right CRCs."""
+    flash = bytearray(flash)
+    payload = 36 + 20  # behind FlashHeader and FrameHeader
+    length, = struct.unpack_from("<I", flash, payload - 8)
+    image = payload + 16  # behind LoadHead
+    total, = struct.unpack_from("<I", flash, payload + 8)
+    flash[image + 7] = 8  # ImageHeader.pes
+    flash[image + total - 4:image + total] = crc32c(flash[image:image + total - 4])
+    flash[payload + length:payload + length + 4] = crc32c(flash[payload:payload + length])
+    return flash
 
 
 class OnADesk(unittest.TestCase):
@@ -78,10 +120,16 @@ class OnADesk(unittest.TestCase):
                     "seq.npy", "-o", "seq.png")
         cls.program("gridrt-host", "teapot.grt", "--size", SMALL, "--device", "seq", "--hits",
                     "small.npy", "-o", "small.png")
+        cls.program("gridrt-image", "builtin:cube", "--layout", "compact", "-o", "cube.grt")
+        cls.program("gridrt-host", "cube.grt", "--size", SMALL, "--device", "seq", "--hits",
+                    "seq-cube.npy")
+        cls.make_flashes()
+        files = ["teapot.grt", "cube.grt", *(name + ".flash" for name in FLASHES)]
         with Guest(["gridrt-host", "gridrt-board", "gridrt-virtual-board", "/usr/sbin/usbip"],
-                   {"teapot.grt": cls.read("teapot.grt")}) as guest:
+                   {name: cls.read(name) for name in files}) as guest:
             boards = [guest.start_board("--core", "seq"),
-                      guest.start_board("--core", "sim", "--serial", "rtl")]
+                      guest.start_board("--core", "sim", "--serial", "rtl", "--flash",
+                                        cls.path / "cube.flash")]
             console, cls.files = guest.run(SCRIPT, boards, timeout=400)
         print(console)
         cls.steps = {name: (text, int(code)) for name, text, code in
@@ -90,6 +138,17 @@ class OnADesk(unittest.TestCase):
     @classmethod
     def program(cls, name, *words):
         subprocess.run([BIN / name, *words], cwd=cls.path, check=True, timeout=120)
+
+    @classmethod
+    def make_flashes(cls):
+        cls.program("gridrt-image", "cube.grt", "--firmware", "cube.flash")
+        cls.program("gridrt-image", "teapot.grt", "--firmware", "good.flash")
+        good = cls.read("good.flash")
+        (cls.path / "cut.flash").write_bytes(good[:len(good) // 2])
+        flipped = bytearray(good)
+        flipped[len(good) // 3] ^= 0x10
+        (cls.path / "flipped.flash").write_bytes(flipped)
+        (cls.path / "eight.flash").write_bytes(for_eight_pes(good))
 
     @classmethod
     def read(cls, name):
@@ -167,6 +226,53 @@ class OnADesk(unittest.TestCase):
         self.assertEqual(self.files["rtl.png"], self.read("small.png"))
         self.assertRegex(self.step("rtl-selftest"), r"^Passed: (\d+) of \1 bytes .* run 1\n$")
         self.assertRegex(self.step("rtl-followed"), r"(?m)^ *\d+  SelfTestPassed +\d+$")
+
+    def stats(self, name):
+        return json.loads(self.files[name + ".json"])
+
+    def test_a_board_with_an_image_in_flash_needs_no_upload(self):
+        self.assertRegex(self.step("good-info"), r"(?m)^state +Ready$")
+        self.assertRegex(self.step("good-info"), r"(?m)^image in flash +Booted, \d+ bytes, answers rays now$")
+        self.assertRegex(self.step("good-log"), r"(?m)^ *\d+  Booted +\d+$")
+        self.step("good-render")
+        self.assertEqual(self.stats("good")["uploads"], 0)
+        self.assertLess(self.stats("good")["bytes_out"], self.stats("cut")["bytes_out"] - 100000)
+        self.assertEqual(self.files["good.npy"], self.read("small.npy"))
+        self.assertEqual(self.files["good.png"], self.read("small.png"))
+
+    def test_an_upload_takes_the_place_of_the_image_in_flash(self):
+        self.step("other-scene")
+        self.assertEqual(self.stats("cube")["uploads"], 1)
+        self.assertEqual(self.files["cube.npy"], self.read("seq-cube.npy"))
+        self.step("back-again")
+        self.assertEqual(self.stats("back")["uploads"], 1)
+        self.assertEqual(self.files["back.npy"], self.read("small.npy"))
+
+    def test_a_wrong_image_in_flash_is_named_and_an_upload_does(self):
+        reasons = {"flipped": "BadPayloadCrc", "cut": r"\w+", "eight": r"\w+"}
+        for name, reason in reasons.items():
+            with self.subTest(name=name):
+                info = self.step(f"{name}-info")
+                self.assertRegex(info, r"(?m)^state +Empty$")
+                self.assertRegex(info, rf"(?m)^image in flash +Failed, Refused \({reason}, detail \d+\), ")
+                self.assertNotIn("answers rays now", info)
+                self.assertRegex(self.step(f"{name}-log"), r"(?m)^ *\d+  BootFailed +\d+$")
+                self.step(f"{name}-render")
+                self.assertEqual(self.stats(name)["uploads"], 1)
+                self.assertEqual(self.files[name + ".npy"], self.read("small.npy"))
+                self.assertEqual(self.files[name + ".png"], self.read("small.png"))
+
+    def test_the_rtl_starts_from_flash(self):
+        self.step("rtl-flash")
+        self.assertEqual(self.stats("rtl")["uploads"], 0)
+        self.assertEqual(self.files["rtl-cube.npy"], self.read("seq-cube.npy"))
+
+    def test_a_flash_that_cannot_be_read_is_no_board(self):
+        for path in ("none.flash", "."):
+            done = subprocess.run([BIN / "gridrt-virtual-board", "--flash", path, "--redirect", "socket"],
+                                  cwd=self.path, capture_output=True, text=True, timeout=60, check=False)
+            self.assertEqual((done.returncode, done.stderr),
+                             (4, f"gridrt-virtual-board: {path}: cannot be read\n"))
 
 
 if __name__ == "__main__":

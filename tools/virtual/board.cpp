@@ -1,6 +1,7 @@
 #include "tools/virtual/board.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <limits>
 #include <optional>
@@ -39,10 +40,19 @@ std::unique_ptr<Endpoint> software_core(const VirtualBoardOptions& options) {
 /// failed: its host has time limits of its own, and resets it.
 class SimulatedEndpoint final : public Endpoint {
  public:
-  explicit SimulatedEndpoint(std::unique_ptr<SimBoard> board)
+  /// `boot_clocks`: that an image in flash may take beside what a report takes.
+  SimulatedEndpoint(std::unique_ptr<SimBoard> board, std::uint64_t boot_clocks)
       : link_(std::move(board), {.silent_clocks = kSlice,
                                  .most_silences = std::numeric_limits<int>::max(),
+                                 .report_clocks = SimTransportOptions{}.report_clocks + boot_clocks,
                                  .reports_wait = false}) {}
+
+  /// Returns once the firmware answers reports, before which it has loaded the image in flash: a
+  /// kernel would not wait for as long as that takes here.
+  Result<void> start() {
+    std::array<std::byte, protocol::StatusReport::kBytes> body{};
+    return link_.get_feature(protocol::StatusReport::kId, body);
+  }
 
   Result<void> consume(std::span<const std::byte> bytes) override {
     if (auto sent = link_.send(bytes); !sent) return sent;
@@ -84,7 +94,14 @@ class SimulatedEndpoint final : public Endpoint {
 Result<VirtualBoard> simulated(const VirtualBoardOptions& options) {
   auto board = make_sim_board(sim_boards().front(), {.flash = options.flash});
   if (!board) return std::unexpected(std::move(board.error()));
-  auto endpoint = std::make_unique<SimulatedEndpoint>(std::move(*board));
+  constexpr std::uint64_t kBootClocks = 100;  // a byte of flash, at the most
+  auto endpoint =
+      std::make_unique<SimulatedEndpoint>(std::move(*board), kBootClocks * options.flash.size());
+  if (!options.flash.empty()) {
+    if (auto started = endpoint->start(); !started) {
+      return std::unexpected(std::move(started.error()));
+    }
+  }
   InputSource input = [sim = endpoint.get()](std::span<std::byte> report) {
     return sim->input(report);
   };

@@ -26,8 +26,9 @@ struct VirtualBoard {
   InputSource input;  ///< input reports that the board sends by itself
 };
 
-/// Powers a board up. Errors: kUsage for an unknown core, kLimit for a serial that is too long,
-/// kUnsupported for what this build does not have.
+/// Powers a board up; it has loaded the image in flash then, or refused it. Errors: kUsage for an
+/// unknown core, kLimit for a serial that is too long, kUnsupported for what this build does not
+/// have.
 Result<VirtualBoard> make_virtual_board(const VirtualBoardOptions& options);
 
 }  // namespace gridrt

@@ -1,8 +1,8 @@
 // gridrt-virtual-board: a board without hardware that a computer, real or virtual, enumerates.
+#include <array>
 #include <chrono>
 #include <cstdio>
 #include <fstream>
-#include <iterator>
 #include <span>
 #include <string>
 #include <utility>
@@ -52,13 +52,26 @@ Result<void> serve(UsbFunction& function, const std::string& place, const Option
   }
 }
 
+Result<std::vector<std::byte>> read_flash(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::array<char, 4096> piece{};
+  std::vector<std::byte> bytes;
+  while (file) {
+    file.read(piece.data(), static_cast<std::streamsize>(piece.size()));
+    const auto came =
+        std::as_bytes(std::span(piece)).first(static_cast<std::size_t>(file.gcount()));
+    bytes.insert(bytes.end(), came.begin(), came.end());
+  }
+  // A folder can be opened, but has no end to come to.
+  if (!file.eof()) return fail(ErrorKind::kFile, path + ": cannot be read");
+  return bytes;
+}
+
 Result<void> run(Options options) {
   if (!options.flash.empty()) {
-    std::ifstream file(options.flash, std::ios::binary);
-    const std::vector<char> bytes{std::istreambuf_iterator<char>(file), {}};
-    if (!file) return fail(ErrorKind::kFile, options.flash + ": cannot be read");
-    const auto view = std::as_bytes(std::span(bytes));
-    options.board.flash.assign(view.begin(), view.end());
+    Result<std::vector<std::byte>> flash = read_flash(options.flash);
+    if (!flash) return std::unexpected(std::move(flash.error()));
+    options.board.flash = std::move(*flash);
   }
   Result<VirtualBoard> board = make_virtual_board(options.board);
   if (!board) return std::unexpected(std::move(board.error()));
