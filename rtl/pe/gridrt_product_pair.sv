@@ -8,12 +8,15 @@ module gridrt_product_pair #(
     parameter bit CHAIN = 1'b0
 ) (
     input  logic             clk_i,
+    input  logic             valid_i,  // whether anybody asks for the sum
     input  logic [1:0][17:0] a_i,    // signed
     input  logic [1:0][17:0] b_i,    // signed but for the low half
     input  logic      [53:0] sum_i,  // of the slice before
     output logic      [53:0] sum_o   // signed, of the factors three clocks ago
 );
 `ifdef GRIDRT_ECP5
+  logic unused;
+  assign unused = valid_i;
   gridrt_ecp5_slice #(
       .SUBTRACT(SUBTRACT),
       .CHAIN(CHAIN)
@@ -27,6 +30,8 @@ module gridrt_product_pair #(
       .sum_o
   );
 `else
+  // Standing still saves a simulation time; on an ECP5 it would cost wires.
+  logic valid_1, valid_2;
   logic signed [1:0][17:0] a, b;
   logic signed [35:0] low;
   logic signed [35:0] high;
@@ -34,11 +39,17 @@ module gridrt_product_pair #(
   assign more = SUBTRACT ? -54'(high) : {high, 18'd0};
   assign chained = CHAIN ? sum_i : '0;
   always_ff @(posedge clk_i) begin
-    a <= a_i;
-    b <= b_i;
-    low <= 36'($signed(a[0]) * $signed({SUBTRACT && b[0][17], b[0]}));
-    high <= $signed(a[1]) * $signed(b[1]);
-    sum_o <= 54'(low) + more + chained;
+    valid_1 <= valid_i;
+    valid_2 <= valid_1;
+    if (valid_i) begin
+      a <= a_i;
+      b <= b_i;
+    end
+    if (valid_1) begin
+      low <= 36'($signed(a[0]) * $signed({SUBTRACT && b[0][17], b[0]}));
+      high <= $signed(a[1]) * $signed(b[1]);
+    end
+    if (valid_2) sum_o <= 54'(low) + more + chained;
   end
 `endif
 endmodule

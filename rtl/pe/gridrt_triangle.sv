@@ -56,16 +56,22 @@ module gridrt_triangle #(
     difference = 18'(a) - 18'(b);
   endfunction
   always_ff @(posedge clk_i) begin
-    for (int unsigned a = 0; a < 3; a++) begin
-      e1[1][a] <= difference(v_i[1][a], v_i[0][a]);
-      e2[1][a] <= difference(v_i[2][a], v_i[0][a]);
-      t[1][a]  <= difference(p0_i[a], v_i[0][a]);
-      d[1][a]  <= 18'($signed(d_i[a]));
+    if (valid_i) begin
+      for (int unsigned a = 0; a < 3; a++) begin
+        e1[1][a] <= difference(v_i[1][a], v_i[0][a]);
+        e2[1][a] <= difference(v_i[2][a], v_i[0][a]);
+        t[1][a]  <= difference(p0_i[a], v_i[0][a]);
+        d[1][a]  <= 18'($signed(d_i[a]));
+      end
     end
-    e1[6:2] <= e1[5:1];
-    e2[6:2] <= e2[5:1];
-    t[6:2]  <= t[5:1];
-    d[6:2]  <= d[5:1];
+    for (int unsigned i = 2; i <= 6; i++) begin
+      if (valid[i-1]) begin
+        e1[i] <= e1[i-1];
+        e2[i] <= e2[i-1];
+        t[i]  <= t[i-1];
+        d[i]  <= d[i-1];
+      end
+    end
   end
 
   // 4, 5 and 6: minors of D x E2 and T x E1 on the axes x, y and z. 7, 8 and 9: det, u, v and tn on the
@@ -80,6 +86,7 @@ module gridrt_triangle #(
         .SUBTRACT(1'b1)
     ) u_q (
         .clk_i,
+        .valid_i(valid[1+a]),
         .a_i({d[1+a][LAST], d[1+a][NEXT]}),
         .b_i({e2[1+a][NEXT], e2[1+a][LAST]}),
         .sum_i('0),
@@ -89,6 +96,7 @@ module gridrt_triangle #(
         .SUBTRACT(1'b1)
     ) u_r (
         .clk_i,
+        .valid_i(valid[1+a]),
         .a_i({t[1+a][LAST], t[1+a][NEXT]}),
         .b_i({e1[1+a][NEXT], e1[1+a][LAST]}),
         .sum_i('0),
@@ -98,6 +106,7 @@ module gridrt_triangle #(
         .CHAIN(a > 0)
     ) u_det (
         .clk_i,
+        .valid_i(valid[4+a]),
         .a_i({2{e1[4+a][a]}}),
         .b_i(q[35:0]),
         .sum_i((a > 0) ? det[(a > 0) ? a - 1 : 0] : '0),
@@ -107,6 +116,7 @@ module gridrt_triangle #(
         .CHAIN(a > 0)
     ) u_u (
         .clk_i,
+        .valid_i(valid[4+a]),
         .a_i({2{t[4+a][a]}}),
         .b_i(q[35:0]),
         .sum_i((a > 0) ? u[(a > 0) ? a - 1 : 0] : '0),
@@ -116,6 +126,7 @@ module gridrt_triangle #(
         .CHAIN(a > 0)
     ) u_v (
         .clk_i,
+        .valid_i(valid[4+a]),
         .a_i({2{d[4+a][a]}}),
         .b_i(r[35:0]),
         .sum_i((a > 0) ? v[(a > 0) ? a - 1 : 0] : '0),
@@ -125,6 +136,7 @@ module gridrt_triangle #(
         .CHAIN(a > 0)
     ) u_tn (
         .clk_i,
+        .valid_i(valid[4+a]),
         .a_i({2{e2[4+a][a]}}),
         .b_i(r[35:0]),
         .sum_i((a > 0) ? tn[(a > 0) ? a - 1 : 0] : '0),
