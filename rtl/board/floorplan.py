@@ -23,7 +23,8 @@ import sys
 BLOCKS = ((4, 13, 22), (31, 40, 49), (69, 78, 87), (96, 105, 114))
 MEMORY_COLUMNS = (0, 2, 4, 6)  # of a block: EBR0 to EBR3
 SLICES = {"det": (10, 0), "tn": (10, 3), "q": (34, 0), "r": (34, 3), "u": (58, 0), "v": (58, 3)}
-SLICE = re.compile(r"(?:gen_pe\[(\d)\].*)?gen_axis\[(\d)\]\.u_(\w+)\.u_slice\..*?(low|high|adder)$")
+SLICE = re.compile(r"(?:gen_pe\[(\d)\].*)?u_triangle\.(?:u_(\w+)\.)?gen_axis\[(\d)\]\.u_(\w+)\.u_slice\..*?"
+                   r"(low|high|adder)$")
 MEMORY = re.compile(r"(?:gen_pe\[(\d)\].*\.)?(u_vertices|u_resolve\.u_ids|u_fetch|u_indices)")
 # The kinds of memories in their order, and the rows that they fill.
 MEMORIES = ((("u_vertices", "u_resolve.u_ids"), (46, 22)), (("u_fetch", "u_indices"), (82, 70)))
@@ -31,8 +32,8 @@ MEMORIES = ((("u_vertices", "u_resolve.u_ids"), (46, 22)), (("u_fetch", "u_indic
 
 def slice_place(found):
     """BEL of a multiplier or an adder, from what SLICE found in its name."""
-    pe, axis, kind, part = found.groups()
-    row, first = SLICES[kind]
+    pe, product, axis, minor, part = found.groups()
+    row, first = SLICES[product or minor]
     block, half = divmod(first + int(axis), 2)
     at = {"low": 0, "high": 1, "adder": 3}[part] + 4 * half
     kind = "ALU54" if part == "adder" else "MULT18"

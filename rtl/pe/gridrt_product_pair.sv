@@ -2,17 +2,17 @@
 // sysDSP makes them (docs/hardware.md): factors, products and sum each end at a register there.
 //   SUBTRACT: sum = a[0] b[0] - a[1] b[1]
 //   else:     sum = a[0] b[0] + 2^18 a[1] b[1], where b[0] has no sign: the halves of a factor of 36 bits
-// CHAIN adds the sum of the slice before, which is then two clocks behind this one's factors.
+// CHAIN adds the sum of the slice before, as it is two clocks after the factors.
 module gridrt_product_pair #(
     parameter bit SUBTRACT = 1'b0,
     parameter bit CHAIN = 1'b0
 ) (
     input  logic             clk_i,
     input  logic             valid_i,  // whether anybody asks for the sum
-    input  logic [1:0][17:0] a_i,    // signed
-    input  logic [1:0][17:0] b_i,    // signed but for the low half
-    input  logic      [53:0] sum_i,  // of the slice before
-    output logic      [53:0] sum_o   // signed, of the factors three clocks ago
+    input  logic [1:0][17:0] a_i,      // signed
+    input  logic [1:0][17:0] b_i,      // signed but for the low half
+    input  logic [53:0]      sum_i,    // of the slice before
+    output logic [53:0]      sum_o     // signed, of the factors three clocks ago
 );
 `ifdef GRIDRT_ECP5
   logic unused;
@@ -30,11 +30,10 @@ module gridrt_product_pair #(
       .sum_o
   );
 `else
-  // Standing still saves a simulation time; on an ECP5 it would cost wires.
+  // A simulation is faster where nothing moves; on an ECP5 that would cost wires.
   logic valid_1, valid_2;
   logic signed [1:0][17:0] a, b;
-  logic signed [35:0] low;
-  logic signed [35:0] high;
+  logic signed [35:0] low, high;
   logic [53:0] more, chained;
   assign more = SUBTRACT ? -54'(high) : {high, 18'd0};
   assign chained = CHAIN ? sum_i : '0;

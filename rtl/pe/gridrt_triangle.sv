@@ -9,8 +9,8 @@
 // 3 B + 2 bits with their sign. det is u + v + w: where all have one sign, it is below 2^(3 B + 2), and
 // elsewhere there is no hit, whatever is left of det in one bit more.
 //
-// Minors and sums of products are made in chains of slices (gridrt_product_pair): the axes follow each
-// other by a clock.
+// Minors and sums of products are made in slices of multipliers (gridrt_product_pair,
+// gridrt_dot_product): the axes follow each other by a clock.
 module gridrt_triangle #(
     parameter int unsigned B = 17,
     parameter int unsigned META = 8,  // bits that travel along
@@ -74,14 +74,13 @@ module gridrt_triangle #(
     end
   end
 
-  // 4, 5 and 6: minors of D x E2 and T x E1 on the axes x, y and z. 7, 8 and 9: det, u, v and tn on the
-  // first axis, on two, on all.
-  logic [2:0][53:0] det, u, v, tn;
-  logic [2:0] unused;
+  // 4, 5 and 6: minors of D x E2 and T x E1 on the axes x, y and z, cut to the bits that they can take.
+  logic [2:0][35:0] q, r;
+  logic [3:0] unused;
   for (genvar a = 0; a < 3; a++) begin : gen_axis
     localparam int unsigned NEXT = (a + 1) % 3;
     localparam int unsigned LAST = (a + 2) % 3;
-    logic [53:0] q, r;
+    logic [53:0] q_sum, r_sum;
     gridrt_product_pair #(
         .SUBTRACT(1'b1)
     ) u_q (
@@ -90,7 +89,7 @@ module gridrt_triangle #(
         .a_i({d[1+a][LAST], d[1+a][NEXT]}),
         .b_i({e2[1+a][NEXT], e2[1+a][LAST]}),
         .sum_i('0),
-        .sum_o(q)
+        .sum_o(q_sum)
     );
     gridrt_product_pair #(
         .SUBTRACT(1'b1)
@@ -100,59 +99,53 @@ module gridrt_triangle #(
         .a_i({t[1+a][LAST], t[1+a][NEXT]}),
         .b_i({e1[1+a][NEXT], e1[1+a][LAST]}),
         .sum_i('0),
-        .sum_o(r)
+        .sum_o(r_sum)
     );
-    gridrt_product_pair #(
-        .CHAIN(a > 0)
-    ) u_det (
-        .clk_i,
-        .valid_i(valid[4+a]),
-        .a_i({2{e1[4+a][a]}}),
-        .b_i(q[35:0]),
-        .sum_i((a > 0) ? det[(a > 0) ? a - 1 : 0] : '0),
-        .sum_o(det[a])
-    );
-    gridrt_product_pair #(
-        .CHAIN(a > 0)
-    ) u_u (
-        .clk_i,
-        .valid_i(valid[4+a]),
-        .a_i({2{t[4+a][a]}}),
-        .b_i(q[35:0]),
-        .sum_i((a > 0) ? u[(a > 0) ? a - 1 : 0] : '0),
-        .sum_o(u[a])
-    );
-    gridrt_product_pair #(
-        .CHAIN(a > 0)
-    ) u_v (
-        .clk_i,
-        .valid_i(valid[4+a]),
-        .a_i({2{d[4+a][a]}}),
-        .b_i(r[35:0]),
-        .sum_i((a > 0) ? v[(a > 0) ? a - 1 : 0] : '0),
-        .sum_o(v[a])
-    );
-    gridrt_product_pair #(
-        .CHAIN(a > 0)
-    ) u_tn (
-        .clk_i,
-        .valid_i(valid[4+a]),
-        .a_i({2{e2[4+a][a]}}),
-        .b_i(r[35:0]),
-        .sum_i((a > 0) ? tn[(a > 0) ? a - 1 : 0] : '0),
-        .sum_o(tn[a])
-    );
-    assign unused[a] = ^{q, r, det[a], u[a], v[a], tn[a]};
+    assign q[a] = q_sum[35:0];
+    assign r[a] = r_sum[35:0];
+    assign unused[a] = ^{q_sum, r_sum};
   end
+
+  // 9: sums over the axes.
+  logic [53:0] det, u, v, tn;
+  assign unused[3] = ^{det, u, v, tn};
+  gridrt_dot_product u_det (
+      .clk_i,
+      .valid_i(valid[6:4]),
+      .a_i({e1[6][2], e1[5][1], e1[4][0]}),
+      .b_i(q),
+      .sum_o(det)
+  );
+  gridrt_dot_product u_u (
+      .clk_i,
+      .valid_i(valid[6:4]),
+      .a_i({t[6][2], t[5][1], t[4][0]}),
+      .b_i(q),
+      .sum_o(u)
+  );
+  gridrt_dot_product u_v (
+      .clk_i,
+      .valid_i(valid[6:4]),
+      .a_i({d[6][2], d[5][1], d[4][0]}),
+      .b_i(r),
+      .sum_o(v)
+  );
+  gridrt_dot_product u_tn (
+      .clk_i,
+      .valid_i(valid[6:4]),
+      .a_i({e2[6][2], e2[5][1], e2[4][0]}),
+      .b_i(r),
+      .sum_o(tn)
+  );
 
   // 10: out of the slices, which are far away.
   logic signed [S_W-1:0] det_10, u_10, v_10, tn_10;
   always_ff @(posedge clk_i) begin
     if (valid[9]) begin
-      det_10 <= S_W'(det[2]);
-      u_10 <= S_W'(u[2]);
-      v_10 <= S_W'(v[2]);
-      tn_10 <= S_W'(tn[2]);
+      det_10 <= S_W'(det);
+      u_10 <= S_W'(u);
+      v_10 <= S_W'(v);
+      tn_10 <= S_W'(tn);
     end
   end
 

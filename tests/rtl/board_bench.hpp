@@ -15,6 +15,7 @@
 #include "host/driver/flash_image.hpp"
 #include "host/driver/session.hpp"
 #include "host/image/image_file.hpp"
+#include "tests/rtl/board_image.hpp"
 #include "tests/unit/image_support.hpp"
 
 namespace gridrt {
@@ -77,17 +78,7 @@ class Bench {
 };
 
 inline const Image& image() {
-  static const Image made = [] {
-    ImageOptions options;
-    options.grid = glm::ivec3{5, 4, 5};
-    options.bits = GRIDRT_RTL_B;
-    options.pes = GRIDRT_RTL_PES;
-    options.layout = protocol::Layout::kCompact;
-    options.with_scene = false;
-    auto built = build_image(random_scene(40, 3, 0.6F), options);
-    EXPECT_TRUE(built) << built.error().message;
-    return *built;
-  }();
+  static const Image made = board_image({5, 4, 5}, 40, 3, 0.6F);
   return made;
 }
 
@@ -122,6 +113,17 @@ inline std::vector<Hit> trace(Device& device) {
   const auto done = device.trace(rays, Query::kClosestHit, hits);
   EXPECT_TRUE(done) << done.error().message;
   return hits;
+}
+
+/// The software PEs' hits of segments() in image().
+inline const std::vector<Hit>& expected() {
+  static const std::vector<Hit> only = [] {
+    auto seq = open_device({.name = "seq-board"});
+    EXPECT_TRUE(seq);
+    EXPECT_TRUE((*seq)->load(image()));
+    return trace(**seq);
+  }();
+  return only;
 }
 
 inline std::vector<std::byte> trace_frame(std::uint32_t ignore) {

@@ -4,7 +4,6 @@
 #include <array>
 #include <bit>
 #include <cstdio>
-#include <cstdlib>
 #include <map>
 #include <string>
 
@@ -12,6 +11,7 @@
 
 #include "hal/fault_injector.hpp"
 #include "tests/rtl/board_bench.hpp"
+#include "tests/rtl/environment.hpp"
 
 namespace gridrt {
 namespace {
@@ -25,10 +25,7 @@ constexpr std::uint32_t kIdleClocks = 2000;  ///< an unfinished frame is given u
 constexpr std::uint64_t kKinds = 10;
 constexpr std::uint64_t kSurelySent = 100;  ///< rays of a picture that are no misses by definition
 
-std::uint64_t schedules() {
-  const char* text = std::getenv("GRIDRT_SIM_SCHEDULES");
-  return text == nullptr ? 8 : std::strtoull(text, nullptr, 10);
-}
+std::uint64_t schedules() { return number_of("GRIDRT_SIM_SCHEDULES", 8); }
 
 /// What happens at a moment, besides faults of frames.
 enum class Event { kNone, kReaderStops, kHang, kReset };
@@ -204,16 +201,6 @@ class BadCable final : public Transport {
   std::uint64_t calls_ = 0;
   bool happened_ = false;
 };
-
-const std::vector<Hit>& expected() {
-  static const std::vector<Hit> only = [] {
-    auto seq = open_device({.name = "seq-board"});
-    EXPECT_TRUE(seq);
-    EXPECT_TRUE((*seq)->load(image()));
-    return trace(**seq);
-  }();
-  return only;
-}
 
 bool same(const Hit& a, const Hit& b) {
   const auto bits = [](double x) { return std::bit_cast<std::uint64_t>(x); };

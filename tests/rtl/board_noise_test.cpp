@@ -5,7 +5,6 @@
 #include <array>
 #include <bit>
 #include <cstdio>
-#include <cstdlib>
 #include <memory>
 #include <random>
 #include <string>
@@ -16,6 +15,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/rtl/board_bench.hpp"
+#include "tests/rtl/environment.hpp"
 #include "tests/rtl/hostile_board.hpp"
 
 namespace gridrt::rtl {
@@ -30,36 +30,13 @@ constexpr std::uint32_t kSequence = 0x5EED0000U;  ///< and some behind it: of No
 constexpr std::uint32_t kTraceSequence = kSequence + 100;
 constexpr std::uint32_t kSessionSequence = kSequence + 200;
 
-std::uint64_t number_of(const char* variable, std::uint64_t otherwise) {
-  const char* text = std::getenv(variable);
-  return text == nullptr ? otherwise : std::strtoull(text, nullptr, 10);
-}
-
 const KnownImage& first() {
   static const KnownImage only = make_known(image());
   return only;
 }
 
 const KnownImage& second() {
-  static const KnownImage only = [] {
-    ImageOptions options;
-    options.grid = glm::ivec3{4, 5, 3};
-    options.bits = GRIDRT_RTL_B;
-    options.pes = GRIDRT_RTL_PES;
-    options.layout = protocol::Layout::kCompact;
-    options.with_scene = false;
-    return make_known(build_image(random_scene(30, 8, 0.7F), options).value());
-  }();
-  return only;
-}
-
-const std::vector<Hit>& expected() {
-  static const std::vector<Hit> only = [] {
-    auto seq = open_device({.name = "seq-board"});
-    EXPECT_TRUE(seq);
-    EXPECT_TRUE((*seq)->load(image()));
-    return trace(**seq);
-  }();
+  static const KnownImage only = make_known(board_image({4, 5, 3}, 30, 8, 0.7F));
   return only;
 }
 

@@ -135,16 +135,8 @@ std::vector<std::byte> HostileFrames::sections() {
   }
   std::vector<std::byte> out;
   const auto add = [&](SectionKind kind, std::uint8_t pe, std::span<const std::byte> section) {
-    for (std::size_t at = 0; at == 0 || at < section.size(); at += 2048) {
-      const std::size_t count = std::min<std::size_t>(2048, section.size() - at);
-      protocol::LoadHead head;
-      head.kind = static_cast<std::uint8_t>(kind);
-      head.pe = pe;
-      head.offset = static_cast<std::uint32_t>(at);
-      head.total = static_cast<std::uint32_t>(section.size());
-      head.bytes = static_cast<std::uint32_t>(count);
-      EXPECT_TRUE(append_frame(out, FrameType::kLoadSection, protocol::Layout::kNone, 7,
-                               load_payload(head, section.subspan(at, count))));
+    for (const auto& payload : section_payloads(kind, pe, section, 2048)) {
+      EXPECT_TRUE(append_frame(out, FrameType::kLoadSection, protocol::Layout::kNone, 7, payload));
     }
   };
   add(SectionKind::kHeader, 0, header);

@@ -13,6 +13,23 @@ std::vector<std::byte> load_payload(const protocol::LoadHead& head,
   return payload;
 }
 
+std::vector<std::vector<std::byte>> section_payloads(protocol::SectionKind kind, std::uint8_t pe,
+                                                     std::span<const std::byte> section,
+                                                     std::size_t piece) {
+  std::vector<std::vector<std::byte>> payloads;
+  for (std::size_t at = 0; at == 0 || at < section.size(); at += piece) {
+    const std::size_t count = std::min(piece, section.size() - at);
+    protocol::LoadHead head;
+    head.kind = static_cast<std::uint8_t>(kind);
+    head.pe = pe;
+    head.offset = static_cast<std::uint32_t>(at);
+    head.total = static_cast<std::uint32_t>(section.size());
+    head.bytes = static_cast<std::uint32_t>(count);
+    payloads.push_back(load_payload(head, section.subspan(at, count)));
+  }
+  return payloads;
+}
+
 std::vector<std::byte> commit_payload(std::uint64_t mask) {
   std::vector<std::byte> payload(protocol::CommitHead::kBytes);
   protocol::store(protocol::CommitHead{mask},

@@ -218,19 +218,9 @@ std::vector<Answer> take_answers(ShellBench& bench, std::size_t* garbage) {
 std::uint32_t send_section(ShellBench& bench, SectionKind kind, std::uint8_t pe,
                            std::span<const std::byte> bytes, std::uint32_t sequence,
                            std::size_t piece) {
-  std::size_t offset = 0;
-  do {
-    const std::size_t count = std::min(piece, bytes.size() - offset);
-    protocol::LoadHead head;
-    head.kind = static_cast<std::uint8_t>(kind);
-    head.pe = pe;
-    head.offset = static_cast<std::uint32_t>(offset);
-    head.total = static_cast<std::uint32_t>(bytes.size());
-    head.bytes = static_cast<std::uint32_t>(count);
-    bench.send(FrameType::kLoadSection, sequence++,
-               load_payload(head, bytes.subspan(offset, count)));
-    offset += count;
-  } while (offset < bytes.size());
+  for (const auto& payload : section_payloads(kind, pe, bytes, piece)) {
+    bench.send(FrameType::kLoadSection, sequence++, payload);
+  }
   return sequence;
 }
 

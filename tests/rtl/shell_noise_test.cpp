@@ -2,10 +2,10 @@
 // right again, streams that do not end, registers at random. Nothing may be written beyond an image
 // memory; and after a Reset, images and rays are taken as if nothing had been.
 #include <cstdio>
-#include <cstdlib>
 
 #include <gtest/gtest.h>
 
+#include "tests/rtl/environment.hpp"
 #include "tests/rtl/hostile_frames.hpp"
 #include "tests/rtl/shell_bench.hpp"
 
@@ -18,10 +18,7 @@ using protocol::SectionKind;
 constexpr std::uint32_t kIdleWindow = 0x1C0;
 constexpr std::uint32_t kRegistersEnd = 0x240;
 
-std::uint64_t schedules() {
-  const char* text = std::getenv("GRIDRT_NOISE_SCHEDULES");
-  return text == nullptr ? 12 : std::strtoull(text, nullptr, 10);
-}
+std::uint64_t schedules() { return number_of("GRIDRT_NOISE_SCHEDULES", 12); }
 
 /// What a schedule has thrown, to know that it was something.
 struct Thrown {

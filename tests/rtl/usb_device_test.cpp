@@ -15,6 +15,7 @@
 #include "host/driver/flash_image.hpp"
 #include "host/driver/session.hpp"
 #include "host/pe/software_device.hpp"
+#include "tests/rtl/board_image.hpp"
 #include "tests/rtl/usb_device_bench.hpp"
 #include "tests/unit/image_support.hpp"
 
@@ -27,17 +28,7 @@ using protocol::JournalCode;
 using protocol::SelfTestState;
 
 const Image& image() {
-  static const Image made = [] {
-    ImageOptions options;
-    options.grid = glm::ivec3{5, 4, 5};
-    options.bits = GRIDRT_RTL_B;
-    options.pes = GRIDRT_RTL_PES;
-    options.layout = protocol::Layout::kCompact;
-    options.with_scene = false;
-    auto built = build_image(random_scene(60, 3, 0.5F), options);
-    EXPECT_TRUE(built) << built.error().message;
-    return *built;
-  }();
+  static const Image made = board_image({5, 4, 5}, 60, 3, 0.5F);
   return made;
 }
 
