@@ -21,6 +21,13 @@ package gridrt_pkg;
   localparam int unsigned AXIS_W = 10;  // voxels along an axis, 1 .. 512
   localparam int unsigned FRACTION = 13;  // bits behind the point of a lateral position
   localparam logic [ID_W-1:0] NO_ID = '1;
+  // Registers of a pipeline that nothing holds up take what is there in every clock: clock enables would
+  // cost an ECP5 a tenth of its wires. In simulation, which is faster so, they move for what is valid.
+`ifdef GRIDRT_FREE_RUNNING
+  localparam bit FREE_RUNNING = 1'b1;
+`else
+  localparam bit FREE_RUNNING = 1'b0;
+`endif
   // Widths of the structs below, for arrays of them: yosys takes neither $bits of a type in a
   // package nor fields of an array's element.
   localparam int unsigned CELLS_W = 2 + 2 * 4 * 4;

@@ -61,6 +61,9 @@ class SimBoard {
   /// Takes the input report that waits for the host; false if there is none.
   virtual bool take_input(InputReport& report) = 0;
 
+  /// Forgets the byte on offer, as a USB device does with what its buffers hold at a Reset.
+  virtual void forget() = 0;
+
   /// Clocks since power-up.
   [[nodiscard]] virtual std::uint64_t clocks() const = 0;
 };

@@ -142,6 +142,7 @@ Result<void> SimTransport::set_feature(std::uint8_t id, std::span<const std::byt
   std::copy_n(body.begin(), access.length, access.body.begin());
   if (auto done = exchange(access); !done) return done;
   if (is_reset) {
+    board_->forget();
     to_board_.clear();
     early_.clear();
     taken_ = given_ = 0;

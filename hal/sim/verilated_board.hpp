@@ -78,15 +78,17 @@ class VerilatedBoard final : public SimBoard {
     std::uint64_t quiet = 0;
     std::uint64_t gap = 0;
     Exchange exchange(access);
+    if (ahead_ && !to_board.empty()) {
+      moved.taken = 1;
+      ahead_ = false;
+    }
     for (;;) {
-      const bool offer = moved.taken < to_board.size();
-      pins.rx_valid_i = offer ? 1 : 0;
-      if (offer) pins.rx_data_i = static_cast<std::uint8_t>(to_board[moved.taken]);
+      offer(to_board.subspan(moved.taken));
       const bool room = moved.given < from_board.size();
       pins.tx_ready_i = room ? 1 : 0;
       if (access != nullptr) exchange.drive(pins);
       fall();  // the outputs follow the inputs; what the rising edge does is decided
-      const bool took = offer && pins.rx_ready_o != 0;
+      const bool took = take_offer(!to_board.empty());
       const bool gave = room && pins.tx_valid_o != 0;
       if (took) ++moved.taken;
       if (gave) from_board[moved.given++] = static_cast<std::byte>(pins.tx_data_o);
@@ -107,21 +109,25 @@ class VerilatedBoard final : public SimBoard {
   bool take_input(InputReport& report) override {
     choose_context();
     Model& pins = *model_;
-    pins.rx_valid_i = 0;
     pins.tx_ready_i = 0;
+    pins.rx_valid_i = held_ ? 1 : 0;
     fall();
     const bool there = pins.event_valid_o != 0;
     if (there) report.id = pins.event_id_o;
     for (std::size_t i = 0; there && i < report.body.size(); ++i) {
+      pins.rx_valid_i = held_ ? 1 : 0;
       pins.event_address_i = static_cast<std::uint8_t>(i);
       pins.event_taken_i = i + 1 == report.body.size() ? 1 : 0;
       fall();
       report.body[i] = static_cast<std::byte>(pins.event_data_o);
+      take_offer(false);
       rise();
     }
     pins.event_taken_i = 0;
     return there;
   }
+
+  void forget() override { held_ = ahead_ = false; }
 
   [[nodiscard]] std::uint64_t clocks() const override { return clocks_; }
 
@@ -168,6 +174,22 @@ class VerilatedBoard final : public SimBoard {
     std::size_t at_ = 0;
   };
 
+  /// Offers the first byte of `rest`, or goes on with the one that was offered before.
+  void offer(std::span<const std::byte> rest) {
+    if (!rest.empty()) {
+      held_ = true;
+      model_->rx_data_i = static_cast<std::uint8_t>(rest.front());
+    }
+    model_->rx_valid_i = held_ ? 1 : 0;
+  }
+  /// Whether the rising edge takes a byte that this run counts; another is counted by the next.
+  bool take_offer(bool counted) {
+    if (!held_ || model_->rx_ready_o == 0) return false;
+    held_ = false;
+    ahead_ = !counted;
+    return counted;
+  }
+
   /// Verilator's library looks some things up in the context of the thread, which is one of several
   /// boards' and may be gone.
   void choose_context() { Verilated::threadContextp(context_.get()); }
@@ -194,6 +216,8 @@ class VerilatedBoard final : public SimBoard {
   std::uint64_t clocks_ = 0;
   SpiFlash flash_;
   bool flash_selected_ = false;
+  bool held_ = false;   // a byte is on offer, and stays so until it is taken
+  bool ahead_ = false;  // and was taken when the caller had nothing to send
 };
 
 }  // namespace gridrt

@@ -209,19 +209,19 @@ module gridrt_fetch #(
     end
   end
   always_ff @(posedge clk_i) begin
-    if (go) begin
+    if (gridrt_pkg::FREE_RUNNING || go) begin
       wanted_1 <= wanted;
       end_1 <= ends;
       slot_1 <= slot;
       cells_1 <= cells;
     end
-    if (valid_1) begin
+    if (gridrt_pkg::FREE_RUNNING || valid_1) begin
       wanted_2 <= wanted_1;
       end_2 <= end_1;
       slot_2 <= slot_1;
       cells_2 <= cells_1;
     end
-    if (valid_2) begin
+    if (gridrt_pkg::FREE_RUNNING || valid_2) begin
       wanted_3 <= wanted_2;
       end_3 <= end_2;
       slot_3 <= slot_2;
@@ -229,7 +229,7 @@ module gridrt_fetch #(
       masks_3 <= masks;
       for (int unsigned i = 0; i < WAY; i++) triangle_3[i] <= found[i][TRI_W-1:0];
     end
-    if (valid_3) begin
+    if (gridrt_pkg::FREE_RUNNING || valid_3) begin
       pass_4 <= pass;
       end_4 <= end_3;
       slot_4 <= slot_3;

@@ -256,9 +256,9 @@ module gridrt_pe #(
     end
   end
   always_ff @(posedge clk_i) begin
-    if (test) meta_1 <= {last, reference_slot, reference_triangle};
-    if (valid_1) meta_2 <= meta_1;
-    if (valid_2) meta_3 <= meta_2;
+    if (gridrt_pkg::FREE_RUNNING || test) meta_1 <= {last, reference_slot, reference_triangle};
+    if (gridrt_pkg::FREE_RUNNING || valid_1) meta_2 <= meta_1;
+    if (gridrt_pkg::FREE_RUNNING || valid_2) meta_3 <= meta_2;
   end
 
   // The ray, beside the vertices.
@@ -276,7 +276,7 @@ module gridrt_pe #(
       .read_data_o(ray_read)
   );
   always_ff @(posedge clk_i) begin
-    if (valid_2) ray_3 <= ray_read;
+    if (gridrt_pkg::FREE_RUNNING || valid_2) ray_3 <= ray_read;
   end
 
   logic [2:0][2:0][B-1:0] corner;

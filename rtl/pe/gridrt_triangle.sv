@@ -37,16 +37,19 @@ module gridrt_triangle #(
   end
 
   // Valid bits and what travels along.
-  logic [STAGES:1] valid;
+  logic [STAGES:1] valid, moves;
+  logic enters;
+  assign enters = gridrt_pkg::FREE_RUNNING || valid_i;
+  assign moves  = gridrt_pkg::FREE_RUNNING ? '1 : valid;
   logic [STAGES:1][META-1:0] meta;
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) valid <= '0;
     else valid <= {valid[STAGES-1:1], valid_i};
   end
   always_ff @(posedge clk_i) begin
-    if (valid_i) meta[1] <= meta_i;
+    if (enters) meta[1] <= meta_i;
     for (int unsigned i = 2; i <= STAGES; i++) begin
-      if (valid[i-1]) meta[i] <= meta[i-1];
+      if (moves[i-1]) meta[i] <= meta[i-1];
     end
   end
 
@@ -56,7 +59,7 @@ module gridrt_triangle #(
     difference = 18'(a) - 18'(b);
   endfunction
   always_ff @(posedge clk_i) begin
-    if (valid_i) begin
+    if (enters) begin
       for (int unsigned a = 0; a < 3; a++) begin
         e1[1][a] <= difference(v_i[1][a], v_i[0][a]);
         e2[1][a] <= difference(v_i[2][a], v_i[0][a]);
@@ -65,7 +68,7 @@ module gridrt_triangle #(
       end
     end
     for (int unsigned i = 2; i <= 6; i++) begin
-      if (valid[i-1]) begin
+      if (moves[i-1]) begin
         e1[i] <= e1[i-1];
         e2[i] <= e2[i-1];
         t[i]  <= t[i-1];
@@ -141,7 +144,7 @@ module gridrt_triangle #(
   // 10: out of the slices, which are far away.
   logic signed [S_W-1:0] det_10, u_10, v_10, tn_10;
   always_ff @(posedge clk_i) begin
-    if (valid[9]) begin
+    if (moves[9]) begin
       det_10 <= S_W'(det);
       u_10 <= S_W'(u);
       v_10 <= S_W'(v);
@@ -153,7 +156,7 @@ module gridrt_triangle #(
   logic signed [S_W-1:0] det_11, tn_11, uv_11, rest_11;
   logic u_zero, u_minus, v_zero, v_minus;
   always_ff @(posedge clk_i) begin
-    if (valid[10]) begin
+    if (moves[10]) begin
       det_11 <= det_10;
       tn_11 <= tn_10;
       uv_11 <= u_10 + v_10;
@@ -187,7 +190,7 @@ module gridrt_triangle #(
       .sum_o(tn_size)
   );
   always_ff @(posedge clk_i) begin
-    if (valid[11]) begin
+    if (moves[11]) begin
       w_12 <= det_11 - uv_11;
       det_12 <= det_size;
       tn_12 <= tn_size;

@@ -63,7 +63,7 @@ module gridrt_divide_stage #(
     else if (enable_i) valid_o <= valid_i;
   end
   always_ff @(posedge clk_i) begin
-    if (enable_i && valid_i) begin
+    if (enable_i && (gridrt_pkg::FREE_RUNNING || valid_i)) begin
       remainder_o <= remainder;
       word_o <= word;
     end
@@ -73,7 +73,7 @@ module gridrt_divide_stage #(
     assign divisor_o = divisor_i;
   end else begin : gen_moving
     always_ff @(posedge clk_i) begin
-      if (enable_i && valid_i) divisor_o <= divisor_i;
+      if (enable_i && (gridrt_pkg::FREE_RUNNING || valid_i)) divisor_o <= divisor_i;
     end
   end
   // Of a second bit; the sign is shifted out.

@@ -63,6 +63,8 @@ module gridrt_march_next (
   logic [DIST_W:0] s10_enter;
   always_ff @(posedge clk_i) begin
     if (valid_i[0]) begin
+      s6_stride <= stride;
+      s6_neg <= s5_neg_i;
       for (int unsigned a = 0; a < 3; a++) begin
         for (int unsigned k = 0; k < 3; k++) begin
           if (s5_axis_i == 2'(a)) begin

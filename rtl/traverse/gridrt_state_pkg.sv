@@ -16,6 +16,7 @@ package gridrt_state_pkg;
   localparam int unsigned UNIT_SHIFT = 11;
   localparam int unsigned REST_W = 28;  // within a quarter-voxel
   localparam int unsigned START_W = 200;  // of start_t, for registers
+  localparam int unsigned KEPT_W = 2 + 3 + 3 + 2 * (REST_W + 1);  // of what a ray keeps: axis, neg, last, slope
   /* verilator lint_on UNUSEDPARAM */
 
   // Per axis x, y, z.

@@ -54,7 +54,6 @@ module gridrt_traverse #(
   localparam int unsigned CELL_W = gridrt_pkg::CELL_W;
   localparam int unsigned EDGE_W = gridrt_state_pkg::EDGE_W;
   localparam int unsigned REST_W = gridrt_state_pkg::REST_W;
-  localparam int unsigned STATE_W = gridrt_state_pkg::START_W;
   localparam int unsigned INDEX_W = (COUNT > 1) ? $clog2(COUNT) : 1;
 
   if (TUS < 1 || TUS > 4 || INDEX >= TUS || SLOTS % TUS != 0 || SLOTS < TUS ||
@@ -78,9 +77,11 @@ module gridrt_traverse #(
   endfunction
 
   // 0: a ray that starts goes first; else the scheduler's choice.
-  logic [10:1] valid;
+  logic [10:1] valid, moves;
+  assign moves = gridrt_pkg::FREE_RUNNING ? '1 : valid;
   logic may_issue, start, grant, again;
-  logic [INDEX_W-1:0] grant_slot, s1_slot, s2_slot, s3_slot, s4_slot, s5_slot, s6_slot, s7_slot, s8_slot, s9_slot, s10_slot;
+  logic [INDEX_W-1:0] grant_slot;
+  logic [10:1][INDEX_W-1:0] slot;
   gridrt_state_pkg::start_t s1_start;
   logic s1_starts;
   // It waits in the register that it begins from.
@@ -97,7 +98,7 @@ module gridrt_traverse #(
       .few_i,
       .idle_i,
       .again_i(again),
-      .again_slot_i(s9_slot),
+      .again_slot_i(slot[9]),
       .grant_o(grant),
       .slot_o(grant_slot)
   );
@@ -117,48 +118,44 @@ module gridrt_traverse #(
       s1_start <= start_i;
       waiting_slot <= place(start_slot_i);
     end
-    if (start || grant) s1_slot <= waits ? waiting_slot : grant_slot;
-    if (valid[1]) s2_slot <= s1_slot;
-    if (valid[2]) s3_slot <= s2_slot;
-    if (valid[3]) s4_slot <= s3_slot;
-    if (valid[4]) s5_slot <= s4_slot;
-    if (valid[5]) s6_slot <= s5_slot;
-    if (valid[6]) s7_slot <= s6_slot;
-    if (valid[7]) s8_slot <= s7_slot;
-    if (valid[8]) s9_slot <= s8_slot;
-    if (valid[9]) s10_slot <= s9_slot;
+    if (gridrt_pkg::FREE_RUNNING || start || grant) slot[1] <= waits ? waiting_slot : grant_slot;
+    for (int unsigned i = 2; i <= 10; i++) begin
+      if (moves[i-1]) slot[i] <= slot[i-1];
+    end
   end
 
   // 1: state; the block looked at is the ray's block or a neighbour of it.
-  gridrt_state_pkg::start_t s1_stored, s1_state, s2_state, s3_state, s4_state, s5_state, s6_state, s7_state, s8_state, s9_state, s10_state, s10_next;
-  logic [1:0] s1_stored_sub, s1_sub, s2_sub, s3_sub, s4_sub, s5_sub, s6_sub, s7_sub, s8_sub, s8_next_sub, s9_next_sub, s10_sub;
-  logic [BLOCK_W-1:0] s1_stored_look, s1_look, s10_look;
-  gridrt_lutram #(
-      .WIDTH(STATE_W + 2 + BLOCK_W),
-      .DEPTH(COUNT)
+  gridrt_state_pkg::start_t s1_state, s2_state, s3_state, s4_state, s5_state, s6_state, s7_state, s8_state, s9_state, s10_state, s10_next;
+  logic [1:0] s1_sub, s2_sub, s3_sub, s4_sub, s5_sub, s6_sub, s7_sub, s8_sub, s8_next_sub, s9_next_sub, s10_sub;
+  logic [BLOCK_W-1:0] s1_look, s10_look;
+  gridrt_march_states #(
+      .COUNT(COUNT)
   ) i_states (
       .clk_i,
-      .write_i(s10_writes),
-      .write_address_i(s10_slot),
-      .write_data_i({s10_next, s10_sub, s10_look}),
-      .read_address_i(s1_slot),
-      .read_data_o({s1_stored, s1_stored_sub, s1_stored_look})
+      .s1_slot_i(slot[1]),
+      .s1_starts_i(s1_starts),
+      .s1_start_i(s1_start),
+      .s1_state_o(s1_state),
+      .s1_sub_o(s1_sub),
+      .s1_look_o(s1_look),
+      .s10_writes_i(s10_writes),
+      .s10_slot_i(slot[10]),
+      .s10_state_i(s10_next),
+      .s10_sub_i(s10_sub),
+      .s10_look_i(s10_look)
   );
-  assign s1_state = s1_starts ? s1_start : s1_stored;
-  assign s1_sub = s1_starts ? 2'd0 : s1_stored_sub;
-  assign s1_look = s1_starts ? s1_start.block : s1_stored_look;
   assign block_enable_o = valid[1];
   assign block_address_o = s1_look;
   always_ff @(posedge clk_i) begin
-    if (valid[1]) {s2_state, s2_sub} <= {s1_state, s1_sub};
-    if (valid[2]) {s3_state, s3_sub} <= {s2_state, s2_sub};
-    if (valid[3]) {s4_state, s4_sub} <= {s3_state, s3_sub};
-    if (valid[4]) {s5_state, s5_sub} <= {s4_state, s4_sub};
-    if (valid[5]) {s6_state, s6_sub} <= {s5_state, s5_sub};
-    if (valid[6]) {s7_state, s7_sub} <= {s6_state, s6_sub};
-    if (valid[7]) {s8_state, s8_sub} <= {s7_state, s7_sub};
-    if (valid[8]) s9_state <= s8_state;
-    if (valid[9]) s10_state <= s9_state;
+    if (moves[1]) {s2_state, s2_sub} <= {s1_state, s1_sub};
+    if (moves[2]) {s3_state, s3_sub} <= {s2_state, s2_sub};
+    if (moves[3]) {s4_state, s4_sub} <= {s3_state, s3_sub};
+    if (moves[4]) {s5_state, s5_sub} <= {s4_state, s4_sub};
+    if (moves[5]) {s6_state, s6_sub} <= {s5_state, s5_sub};
+    if (moves[6]) {s7_state, s7_sub} <= {s6_state, s6_sub};
+    if (moves[7]) {s8_state, s8_sub} <= {s7_state, s7_sub};
+    if (moves[8]) s9_state <= s8_state;
+    if (moves[9]) s10_state <= s9_state;
   end
 
   // 2: constants in the order dominant axis, b, c.
@@ -178,7 +175,7 @@ module gridrt_traverse #(
   logic [2:0] s3_ahead, s8_jump, s9_jump;
   gridrt_march_record i_record (
       .clk_i,
-      .valid_i(valid[8:3]),
+      .valid_i(moves[8:3]),
       .s3_data_i(block_data_i),
       .s3_axis_i(s3_state.axis),
       .s3_neg_i(s3_state.neg),
@@ -196,7 +193,7 @@ module gridrt_traverse #(
   for (genvar n = 0; n < 2; n++) begin : gen_lateral
     gridrt_march_lateral i_lateral (
         .clk_i,
-        .valid_i(valid[8:2]),
+        .valid_i(moves[8:2]),
         .s2_quarter_i(s2_state.quarter[n]),
         .s2_low_i(s2_state.low[n]),
         .s2_limit_i(s2_state.limit[n]),
@@ -214,12 +211,12 @@ module gridrt_traverse #(
   logic [EDGE_W-1:0] s3_edge, s4_edge;  // of the dominant axis
   logic [2:0] s4_ahead, s5_ahead;
   always_ff @(posedge clk_i) begin
-    if (valid[2]) s3_edge <= s2_edge[0];
-    if (valid[3]) begin
+    if (moves[2]) s3_edge <= s2_edge[0];
+    if (moves[3]) begin
       s4_edge <= s3_edge;
       s4_ahead <= s3_ahead;
     end
-    if (valid[4]) s5_ahead <= s4_ahead;
+    if (moves[4]) s5_ahead <= s4_ahead;
   end
   logic [2:0] s7_ahead;
   logic [DIST_W:0] s8_enter;
@@ -227,7 +224,7 @@ module gridrt_traverse #(
   logic s9_over;
   gridrt_march_way i_way (
       .clk_i,
-      .valid_i(valid[8:4]),
+      .valid_i(moves[8:4]),
       .s4_edge_i(s4_edge),
       .s5_ahead_i(s5_ahead),
       .s7_enter_i(s7_state.enter),
@@ -247,7 +244,7 @@ module gridrt_traverse #(
   logic s8_on, s9_on;  // on: to another block-slab
   gridrt_block_voxels i_voxels (
       .clk_i,
-      .valid_i(valid[8:7]),
+      .valid_i(moves[8:7]),
       .s7_axis_i(s7_state.axis),
       .s7_neg_i(s7_state.neg),
       .s7_first_i(s7_state.first),
@@ -281,7 +278,7 @@ module gridrt_traverse #(
       .write_i(mine),
       .write_address_i(place(interrupt_i.slot)),
       .write_data_i(interrupt_i.limit),
-      .read_address_i(s8_slot),
+      .read_address_i(slot[8]),
       .read_data_o(s8_limit)
   );
   logic [COUNT-1:0] limits, starts;
@@ -300,11 +297,11 @@ module gridrt_traverse #(
     else limited <= (limited | limits) & ~starts;
   end
   always_ff @(posedge clk_i) begin
-    if (valid[8]) begin
+    if (moves[8]) begin
       s9_on <= s8_on;
       s9_next_sub <= s8_next_sub;
-      s9_killed <= limited[s8_slot] && s8_near_enter > s8_limit;
-      s9_ends <= limited[s8_slot] && (s8_enter[DIST_W] ? 1'b0 : s8_enter[DIST_W-1:0] > s8_limit);
+      s9_killed <= limited[slot[8]] && s8_near_enter > s8_limit;
+      s9_ends <= limited[slot[8]] && (s8_enter[DIST_W] ? 1'b0 : s8_enter[DIST_W-1:0] > s8_limit);
       s9_enter <= s8_enter;
     end
   end
@@ -322,7 +319,7 @@ module gridrt_traverse #(
       .may_issue_o(may_issue),
       .s9_valid_i(valid[9]),
       .s9_open_i(s9_occupied && !s9_killed),
-      .s9_slot_i(slot_of(s9_slot)),
+      .s9_slot_i(slot_of(slot[9])),
       .s9_axis_i(s9_state.axis),
       .s9_neg_i(s9_state.neg),
       .s9_base_i(s9_record[8+:CELL_W]),
@@ -340,16 +337,16 @@ module gridrt_traverse #(
   );
   assign again = valid[9] && !done;
   assign inc_valid_o = push;
-  assign inc_slot_o = slot_of(s9_slot);
+  assign inc_slot_o = slot_of(slot[9]);
   assign done_valid_o = valid[9] && done;
-  assign done_slot_o = slot_of(s9_slot);
+  assign done_slot_o = slot_of(slot[9]);
   assign step_o = valid[9];
 
   // 6-10: the next block.
   logic s10_going;
   gridrt_march_next i_next (
       .clk_i,
-      .valid_i(valid[9:5]),
+      .valid_i(moves[9:5]),
       .stride_i(grid_i.stride[2:1]),
       .s5_axis_i(s5_state.axis),
       .s5_neg_i(s5_state.neg),
@@ -367,20 +364,20 @@ module gridrt_traverse #(
       .s10_look_o(s10_look)
   );
   always_ff @(posedge clk_i) begin
-    if (valid[9]) s10_going <= !done;
+    if (moves[9]) s10_going <= !done;
   end
   assign s10_writes = valid[10] && s10_going;
 
   // For --explain.
   logic [7:0][BLOCK_W-1:0] look;  // in clocks 2 to 9
   always_ff @(posedge clk_i) begin
-    if (valid[1]) look[0] <= s1_look;
+    if (moves[1]) look[0] <= s1_look;
     for (int unsigned i = 1; i < 8; i++) begin
-      if (valid[i+1]) look[i] <= look[i-1];
+      if (moves[i+1]) look[i] <= look[i-1];
     end
   end
   assign tap_valid_o = valid[9];
-  assign tap_slot_o = slot_of(s9_slot);
+  assign tap_slot_o = slot_of(slot[9]);
   assign tap_block_o = look[7];
   assign tap_cand_o = cand;
   assign tap_jump_o = s9_jump;

@@ -44,6 +44,17 @@ module gridrt_sim_probe (
   logic [7:0] first, id;
   logic [6:0] length;
 
+  // Whoever offers a byte waits until it is taken, or for a Reset.
+  gridrt_stream_check #(
+      .WIDTH(8)
+  ) u_rx_check (
+      .clk_i,
+      .rst_ni(rst_ni && !deaf),
+      .valid_i(rx_valid_i),
+      .ready_i(rx_ready_o),
+      .data_i(rx_data_i)
+  );
+
   assign rx_ready_o = fifo_ready && !deaf;
   assign push = rx_valid_i && rx_ready_o;
 

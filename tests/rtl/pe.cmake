@@ -13,7 +13,7 @@ add_custom_command(OUTPUT ${dsp}/MULT18X18D.sv ${dsp}/ALU54B.sv
 add_custom_command(OUTPUT ${dsp}/gridrt_ecp5_slice.sv
   COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/rtl/pe/make_ecp5_slice.py ${dsp}/gridrt_ecp5_slice.sv
   DEPENDS ${PROJECT_SOURCE_DIR}/rtl/pe/make_ecp5_slice.py VERBATIM)
-gridrt_rtl_bench(rtl_triangle_ecp5 TOP gridrt_triangle PARAMETERS B=17 META=32 DEFINES GRIDRT_ECP5
+gridrt_rtl_bench(rtl_triangle_ecp5 TOP gridrt_triangle PARAMETERS B=17 META=32 DEFINES GRIDRT_ECP5 GRIDRT_FREE_RUNNING
                  FILES ${dsp}/MULT18X18D.sv ${dsp}/ALU54B.sv ${dsp}/gridrt_ecp5_slice.sv
                  SOURCES triangle_bench.cpp)
 gridrt_rtl_bench(rtl_resolve_17 TOP gridrt_resolve PARAMETERS B=17 TRIS=64 SLOTS=64 DIVIDERS=3
@@ -28,7 +28,7 @@ set(board B=17 SLOTS=64 REFS=8192 TRIS=4096 VERTS=2560 DIVIDERS=2 NUMBER=0)
 set(small B=12 SLOTS=8 REFS=300 TRIS=100 VERTS=64 DIVIDERS=1 NUMBER=2)
 gridrt_rtl_bench(rtl_pe_17 TOP gridrt_pe PARAMETERS ${board} SOURCES pe_bench.cpp LINK gridrt_hal gridrt_image)
 gridrt_rtl_bench(rtl_pe_12 TOP gridrt_pe PARAMETERS ${small} SOURCES pe_bench.cpp LINK gridrt_hal gridrt_image)
-gridrt_rtl_bench(rtl_pe_stalls TOP gridrt_pe PARAMETERS ${board} DEFINES GRIDRT_STALL
+gridrt_rtl_bench(rtl_pe_stalls TOP gridrt_pe PARAMETERS ${board} DEFINES GRIDRT_STALL GRIDRT_FREE_RUNNING
                  SOURCES pe_bench.cpp LINK gridrt_hal gridrt_image)
 target_compile_definitions(rtl_pe_stalls PRIVATE GRIDRT_STALL)
 gridrt_rtl_bench(rtl_pe_no_cancel TOP gridrt_pe PARAMETERS ${small} "CANCEL=1'b0"

@@ -151,6 +151,31 @@ TEST(SimTransport, AnInputReportIsTakenOnce) {
   EXPECT_FALSE(board.take_input(report));
 }
 
+TEST(SimTransport, AByteOnOfferStaysWhileAReportIsTakenAndIsCountedOnce) {
+  Board board;
+  board.power_up();
+  std::vector<std::byte> sent(40);
+  for (std::size_t i = 0; i < sent.size(); ++i) sent[i] = static_cast<std::byte>(i);
+  const RunLimits limits{.quiet = 100, .gap = 100};
+  ReportAccess access{.id = protocol::StatusReport::kId};
+  std::size_t taken = board.run(sent, {}, limits, &access).taken;
+  EXPECT_EQ(taken, 16U);  // what the probe holds; the next byte is on offer
+  InputReport report;
+  ASSERT_TRUE(board.take_input(report));
+  std::vector<std::byte> out(sent.size());
+  std::size_t given = board.run({}, out, limits, nullptr).given;
+  EXPECT_EQ(given, 17U);  // the probe has taken it when nobody had more to send
+  while (given < out.size()) {
+    const RunResult moved =
+        board.run(std::span(sent).subspan(taken), std::span(out).subspan(given), limits, nullptr);
+    ASSERT_GT(moved.taken + moved.given, 0U);
+    taken += moved.taken;
+    given += moved.given;
+  }
+  EXPECT_EQ(taken, sent.size());
+  EXPECT_EQ(out, sent);
+}
+
 TEST(SimTransport, AnInputReportIsReadAndNoAnswerIsLostMeanwhile) {
   SimTransport link = open();
   ASSERT_TRUE(link.send(bytes({1, 2, 3})));
