@@ -32,7 +32,13 @@ module gridrt_slots #(
   assign push_slot = filling ? fill[SLOT_W-1:0] : free_slot_i;
 
   for (genvar t = 0; t < TUS; t++) begin : gen_list
-    assign wanted[t] = push_slot % SLOT_W'(TUS) == SLOT_W'(t);
+    // Of thirds a table of six bits: a remainder would be a chain of carries.
+    always_comb begin
+      wanted[t] = TUS != 3 && push_slot % SLOT_W'(TUS) == SLOT_W'(t);
+      for (int unsigned i = t; TUS == 3 && i < SLOTS; i = i + 3) begin
+        if (push_slot == SLOT_W'(i)) wanted[t] = 1'b1;
+      end
+    end
     gridrt_fifo #(
         .WIDTH(SLOT_W),
         .DEPTH(SLOTS / TUS)

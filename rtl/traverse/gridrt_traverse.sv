@@ -64,12 +64,15 @@ module gridrt_traverse #(
     $error("gridrt_traverse: QUEUE must be 1 to 64, B at most 17");
   end
 
-  // A slot's place in this unit: slot / TUS (a third: times 43 / 128, right up to 127).
+  // A slot is this unit's if slot % TUS is INDEX, its place here is slot / TUS; for thirds as tables of
+  // six bits, since a division would be a chain of carries.
+  function automatic logic belongs(logic [SLOT_W-1:0] slot);
+    belongs = TUS != 3 && 32'(slot) % TUS == INDEX;
+    for (int unsigned i = INDEX; TUS == 3 && i < SLOTS; i = i + 3) if (slot == SLOT_W'(i)) belongs = 1'b1;
+  endfunction
   function automatic logic [INDEX_W-1:0] place(logic [SLOT_W-1:0] slot);
-    logic [SLOT_W+6:0] wide;
-    wide = {7'b0, slot};
-    place = INDEX_W'(32'(slot) / TUS);
-    if (TUS == 3) place = INDEX_W'((wide + (wide << 1) + (wide << 3) + (wide << 5)) >> 7);
+    place = (TUS == 3) ? '0 : INDEX_W'(32'(slot) / TUS);
+    for (int unsigned i = 0; TUS == 3 && i < SLOTS; i++) if (slot == SLOT_W'(i)) place = INDEX_W'(i / 3);
   endfunction
   function automatic logic [SLOT_W-1:0] slot_of(logic [INDEX_W-1:0] index);
     slot_of = SLOT_W'(INDEX);
@@ -269,7 +272,7 @@ module gridrt_traverse #(
   logic [DIST_W-1:0] s8_limit;
   logic s9_killed, s9_ends, mine;
   logic [DIST_W:0] s9_enter;
-  assign mine = interrupt_i.valid && CANCEL && slot_of(place(interrupt_i.slot)) == interrupt_i.slot;
+  assign mine = interrupt_i.valid && CANCEL && belongs(interrupt_i.slot);
   gridrt_lutram #(
       .WIDTH(DIST_W),
       .DEPTH(COUNT)
@@ -288,7 +291,7 @@ module gridrt_traverse #(
       .line_o (limits)
   );
   gridrt_onehot #(.LINES(COUNT)) i_starts_it (
-      .valid_i(alloc_i.valid && slot_of(place(alloc_i.slot)) == alloc_i.slot),
+      .valid_i(alloc_i.valid && belongs(alloc_i.slot)),
       .index_i(place(alloc_i.slot)),
       .line_o (starts)
   );
@@ -389,7 +392,7 @@ module gridrt_traverse #(
   always_ff @(posedge clk_i) begin
     if (rst_ni) begin
       assert (!done_valid_o || !again);
-      if (start_valid_i) assert (slot_of(place(start_slot_i)) == start_slot_i);
+      if (start_valid_i) assert (belongs(start_slot_i) && slot_of(place(start_slot_i)) == start_slot_i);
       if (start_valid_i) assert (32'(start_slot_i) < SLOTS);
     end
   end
