@@ -4,8 +4,8 @@
 module gridrt_board #(
     parameter int unsigned B = 17,  // lattice bits, 4 to 17
     parameter int unsigned PES = 4,  // 1, 2 or 4
-    parameter int unsigned TUS = 4,  // of the engine, as those below: gridrt_engine.sv
-    parameter int unsigned SLOTS = 64,
+    parameter int unsigned TUS = 3,  // of the engine, as those below: gridrt_engine.sv
+    parameter int unsigned SLOTS = 63,
     parameter int unsigned ROB = 256,
     parameter int unsigned QUEUE = 16,
     parameter int unsigned AHEAD = 2,

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Where the multipliers and memories of the PEs are on an LFE5UM5G-85F.
+"""Where the multipliers and memories of the PEs are on an LFE5UM5G-85F, and where nothing is.
 
   rtl/board/floorplan.py NETLIST    # yosys' netlist (JSON), which gets an attribute BEL for each
 
@@ -13,6 +13,9 @@ blocks of its sysDSP rows, 27 columns wide:
 
 so that a minor's 36 wires reach both of its products without leaving their columns.
 Columns 58 to 65 and what is left of the memories' rows are for ray setup and traversal.
+
+The placer packs logic until no LUT of a tile is free, and then wires are scarce there. So that a design
+of several PEs is spread more evenly, some rows hold LUTs that nothing is connected to.
 """
 import json
 import pathlib
@@ -28,6 +31,15 @@ SLICE = re.compile(r"(?:gen_pe\[(\d)\].*)?u_triangle\.(?:u_(\w+)\.)?gen_axis\[(\
 MEMORY = re.compile(r"(?:gen_pe\[(\d)\].*\.)?(u_vertices|u_resolve\.u_ids|u_fetch|u_indices)")
 # The kinds of memories in their order, and the rows that they fill.
 MEMORIES = ((("u_vertices", "u_resolve.u_ids"), (46, 22)), (("u_fetch", "u_indices"), (82, 70)))
+# Rows without logic, the columns of logic, and the LUTs of a tile.
+FREE_ROWS = (28, 38, 42, 50, 54, 62, 66, 74, 78)
+COLUMNS = range(2, 125)
+LUTS = [f"SLICE{s}.K{k}" for s in "ABCD" for k in (0, 1)]
+UNUSED = "floorplan_unused_"  # the first letters of their cells' names
+# Of nextpnr's router2, which has no options for them: costs of wires that several nets want grow more
+# slowly than they do else, and nets look for a way farther around.
+ROUTER = {"histCongWeight": "0.5", "currCongWeightMult": "0.5", "biasCostFactor": "0.0",
+          "bbMargin/x": "16", "bbMargin/y": "16"}
 
 
 def slice_place(found):
@@ -73,12 +85,25 @@ def place(cells):
     return placed
 
 
+def keep_free(cells):
+    """Puts LUTs without wires into FREE_ROWS."""
+    for row in FREE_ROWS:
+        for column in COLUMNS:
+            for lut in LUTS:
+                cells[f"{UNUSED}X{column}_Y{row}_{lut}"] = {
+                    "type": "LUT4", "parameters": {"INIT": "0" * 16}, "port_directions": {},
+                    "connections": {}, "attributes": {"BEL": f"X{column}/Y{row}/{lut}"}}
+
+
 def main():
     path = pathlib.Path(sys.argv[1])
     netlist = json.loads(path.read_text(encoding="utf-8"))
     top = max(netlist["modules"].values(), key=lambda m: len(m["cells"]))
     if not place(top["cells"]):
         sys.exit(f"floorplan: {path} has no slice of a PE")
+    if any("gen_pe[1]" in name for name in top["cells"]):
+        keep_free(top["cells"])
+        top["settings"] = top.get("settings", {}) | {f"router2/{k}": v for k, v in ROUTER.items()}
     path.write_text(json.dumps(netlist), encoding="utf-8")
 
 

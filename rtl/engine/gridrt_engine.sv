@@ -8,8 +8,8 @@
 module gridrt_engine #(
     parameter int unsigned B = 17,  // lattice bits, 4 to 17
     parameter int unsigned PES = 4,  // 1, 2 or 4
-    parameter int unsigned TUS = 4,  // traversal units, 1 to 4
-    parameter int unsigned SLOTS = 64,  // rays in traversal, a multiple of TUS, at most 64
+    parameter int unsigned TUS = 3,  // traversal units, 1 to 4
+    parameter int unsigned SLOTS = 63,  // rays in traversal, a multiple of TUS, at most 64
     parameter int unsigned ROB = 256,  // answers that wait for their turn, a power of two
     parameter int unsigned QUEUE = 16,  // tasks that wait between an expander and a PE
     parameter int unsigned AHEAD = 2,  // tasks of a ray in advance: no step with so many pending

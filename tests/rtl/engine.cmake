@@ -5,7 +5,7 @@ function(gridrt_engine_bench name)
 endfunction()
 gridrt_engine_bench(b17_4 PARAMETERS B=17 PES=4)
 gridrt_engine_bench(b12_2 PARAMETERS B=12 PES=2 TUS=1 SLOTS=16 QUEUE=4 ROB=16)
-gridrt_engine_bench(stalls PARAMETERS B=17 PES=4 DEFINES GRIDRT_STALL GRIDRT_FREE_RUNNING)
+gridrt_engine_bench(stalls PARAMETERS B=17 PES=4 TUS=4 SLOTS=64 DEFINES GRIDRT_STALL GRIDRT_FREE_RUNNING)
 
 # What cancel and feedback are for.
 function(gridrt_engine_ablation name)

@@ -19,6 +19,7 @@ CASES = [
     ("gridrt_engine", {"PES": 8}, "PES must be"),
     ("gridrt_engine", {"TUS": 5, "SLOTS": 60}, "TUS must be"),
     ("gridrt_engine", {"TUS": 4, "SLOTS": 50}, "SLOTS must be"),
+    ("gridrt_engine", {"TUS": 3, "SLOTS": 64}, "SLOTS must be"),
     ("gridrt_engine", {"SLOTS": 66}, "SLOTS must be"),
     ("gridrt_engine", {"SLOTS": 0}, "SLOTS must be"),
     ("gridrt_engine", {"ROB": 100}, "ROB must be"),
