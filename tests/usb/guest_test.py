@@ -72,7 +72,8 @@ port=3241
 for f in {" ".join(FLASHES)}; do
   gridrt-virtual-board --core seq --usbip $port --serial $f --flash /$f.flash &
   for i in $(seq 50); do usbip --tcp-port $port list -r 127.0.0.1 >/dev/null 2>&1 && break; sleep 0.1; done
-  usbip --tcp-port $port attach -r 127.0.0.1 -b 1-1
+  # Soon after another one it may fail to open the driver.
+  for i in $(seq 50); do usbip --tcp-port $port attach -r 127.0.0.1 -b 1-1 && break; sleep 0.1; done
   port=$((port + 1)); boards=$((boards + 1))
 done
 for i in $(seq 50); do [ $(ls /dev | grep -c '^hidraw') = $boards ] && break; sleep 0.1; done
