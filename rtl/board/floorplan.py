@@ -95,8 +95,8 @@ def keep_free(cells):
                     "connections": {}, "attributes": {"BEL": f"X{column}/Y{row}/{lut}"}}
 
 
-def main():
-    path = pathlib.Path(sys.argv[1])
+def fix(path):
+    """Writes all of it into a netlist; ends the program if that has no PE."""
     netlist = json.loads(path.read_text(encoding="utf-8"))
     top = max(netlist["modules"].values(), key=lambda m: len(m["cells"]))
     if not place(top["cells"]):
@@ -108,4 +108,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    fix(pathlib.Path(sys.argv[1]))

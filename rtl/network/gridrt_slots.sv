@@ -15,6 +15,7 @@ module gridrt_slots #(
 );
   localparam int unsigned SLOT_W = gridrt_pkg::SLOT_W;
   localparam int unsigned COUNT_W = $clog2(SLOTS / TUS + 1);
+  localparam int unsigned PLACE_W = (SLOTS / TUS > 1) ? $clog2(SLOTS / TUS) : 1;
 
   if (SLOTS < 1 || SLOTS > (1 << SLOT_W) || SLOTS % TUS != 0) begin : gen_illegal
     $error("gridrt_slots: SLOTS must be a multiple of TUS and at most 64");
@@ -31,14 +32,16 @@ module gridrt_slots #(
   assign push = filling || free_i;
   assign push_slot = filling ? fill[SLOT_W-1:0] : free_slot_i;
 
+  logic [PLACE_W-1:0] unused_place;
+  gridrt_slot_unit #(
+      .TUS  (TUS),
+      .SLOTS(SLOTS)
+  ) i_unit (
+      .slot_i (push_slot),
+      .unit_o (wanted),
+      .place_o(unused_place)
+  );
   for (genvar t = 0; t < TUS; t++) begin : gen_list
-    // Of thirds a table of six bits: a remainder would be a chain of carries.
-    always_comb begin
-      wanted[t] = TUS != 3 && push_slot % SLOT_W'(TUS) == SLOT_W'(t);
-      for (int unsigned i = t; TUS == 3 && i < SLOTS; i = i + 3) begin
-        if (push_slot == SLOT_W'(i)) wanted[t] = 1'b1;
-      end
-    end
     gridrt_fifo #(
         .WIDTH(SLOT_W),
         .DEPTH(SLOTS / TUS)

@@ -64,16 +64,18 @@ module gridrt_traverse #(
     $error("gridrt_traverse: QUEUE must be 1 to 64, B at most 17");
   end
 
-  // A slot is this unit's if slot % TUS is INDEX, its place here is slot / TUS; for thirds as tables of
-  // six bits, since a division would be a chain of carries.
-  function automatic logic belongs(logic [SLOT_W-1:0] slot);
-    belongs = TUS != 3 && 32'(slot) % TUS == INDEX;
-    for (int unsigned i = INDEX; TUS == 3 && i < SLOTS; i = i + 3) if (slot == SLOT_W'(i)) belongs = 1'b1;
-  endfunction
-  function automatic logic [INDEX_W-1:0] place(logic [SLOT_W-1:0] slot);
-    place = (TUS == 3) ? '0 : INDEX_W'(32'(slot) / TUS);
-    for (int unsigned i = 0; TUS == 3 && i < SLOTS; i++) if (slot == SLOT_W'(i)) place = INDEX_W'(i / 3);
-  endfunction
+  // Whether the slots of others are this unit's, and their places here.
+  logic [2:0][SLOT_W-1:0] named;
+  logic [2:0][TUS-1:0] units;
+  logic [2:0][INDEX_W-1:0] places;
+  assign named = {start_slot_i, alloc_i.slot, interrupt_i.slot};
+  for (genvar i = 0; i < 3; i++) begin : gen_named
+    gridrt_slot_unit #(.TUS(TUS), .SLOTS(SLOTS)) i_unit (
+        .slot_i (named[i]),
+        .unit_o (units[i]),
+        .place_o(places[i])
+    );
+  end
   function automatic logic [SLOT_W-1:0] slot_of(logic [INDEX_W-1:0] index);
     slot_of = SLOT_W'(INDEX);
     for (int unsigned i = 0; i < TUS; i++) slot_of = slot_of + SLOT_W'(index);
@@ -85,10 +87,9 @@ module gridrt_traverse #(
   logic may_issue, start, grant, again;
   logic [INDEX_W-1:0] grant_slot;
   logic [10:1][INDEX_W-1:0] slot;
-  gridrt_state_pkg::start_t s1_start;
-  logic s1_starts;
   // It waits in the register that it begins from.
-  logic waits;
+  gridrt_state_pkg::start_t s1_start;
+  logic s1_starts, waits;
   logic [INDEX_W-1:0] waiting_slot;
   assign start_ready_o = !waits;
   assign start = waits && may_issue;
@@ -119,7 +120,7 @@ module gridrt_traverse #(
     s1_starts <= start;
     if (start_valid_i && !waits) begin
       s1_start <= start_i;
-      waiting_slot <= place(start_slot_i);
+      waiting_slot <= places[2];
     end
     if (gridrt_pkg::FREE_RUNNING || start || grant) slot[1] <= waits ? waiting_slot : grant_slot;
     for (int unsigned i = 2; i <= 10; i++) begin
@@ -272,14 +273,14 @@ module gridrt_traverse #(
   logic [DIST_W-1:0] s8_limit;
   logic s9_killed, s9_ends, mine;
   logic [DIST_W:0] s9_enter;
-  assign mine = interrupt_i.valid && CANCEL && belongs(interrupt_i.slot);
+  assign mine = interrupt_i.valid && CANCEL && units[0][INDEX];
   gridrt_lutram #(
       .WIDTH(DIST_W),
       .DEPTH(COUNT)
   ) i_limits (
       .clk_i,
       .write_i(mine),
-      .write_address_i(place(interrupt_i.slot)),
+      .write_address_i(places[0]),
       .write_data_i(interrupt_i.limit),
       .read_address_i(slot[8]),
       .read_data_o(s8_limit)
@@ -287,12 +288,12 @@ module gridrt_traverse #(
   logic [COUNT-1:0] limits, starts;
   gridrt_onehot #(.LINES(COUNT)) i_limits_it (
       .valid_i(mine),
-      .index_i(place(interrupt_i.slot)),
+      .index_i(places[0]),
       .line_o (limits)
   );
   gridrt_onehot #(.LINES(COUNT)) i_starts_it (
-      .valid_i(alloc_i.valid && belongs(alloc_i.slot)),
-      .index_i(place(alloc_i.slot)),
+      .valid_i(alloc_i.valid && units[1][INDEX]),
+      .index_i(places[1]),
       .line_o (starts)
   );
   always_ff @(posedge clk_i or negedge rst_ni) begin
@@ -386,13 +387,13 @@ module gridrt_traverse #(
   assign tap_jump_o = s9_jump;
 
   logic unused;
-  assign unused = &{1'b0, s9_state};
+  assign unused = &{1'b0, s9_state, units};
 
 `ifdef GRIDRT_ASSERT
   always_ff @(posedge clk_i) begin
     if (rst_ni) begin
       assert (!done_valid_o || !again);
-      if (start_valid_i) assert (belongs(start_slot_i) && slot_of(place(start_slot_i)) == start_slot_i);
+      if (start_valid_i) assert (units[2][INDEX] && slot_of(places[2]) == start_slot_i);
       if (start_valid_i) assert (32'(start_slot_i) < SLOTS);
     end
   end

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Runs "verilator --lint-only -Wall" with every module of a folder as the top.
 
-A module is taken with its default parameters, as it is and with the assertions and registers that
-run freely, on as many processors as there are. File and module have the same name. At the end the linter must find two
-defects that are put in on purpose, so that it cannot be silent for another reason.
+A module is taken with its default parameters, as it is and with assertions and registers that run
+freely, on as many processors as there are. File and module have the same name. At the end the
+linter must find two defects that are put in on purpose, so that it cannot be silent for another
+reason.
 """
 import argparse
 import concurrent.futures
