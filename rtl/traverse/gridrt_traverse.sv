@@ -85,12 +85,11 @@ module gridrt_traverse #(
   logic [10:1] valid, moves;
   assign moves = gridrt_pkg::FREE_RUNNING ? '1 : valid;
   logic may_issue, start, grant, again;
-  logic [INDEX_W-1:0] grant_slot;
+  logic [INDEX_W-1:0] grant_slot, waiting_slot;
   logic [10:1][INDEX_W-1:0] slot;
   // It waits in the register that it begins from.
   gridrt_state_pkg::start_t s1_start;
   logic s1_starts, waits;
-  logic [INDEX_W-1:0] waiting_slot;
   assign start_ready_o = !waits;
   assign start = waits && may_issue;
   gridrt_schedule #(
