@@ -127,9 +127,16 @@ module gridrt_mailbox (
   end
 
 `ifdef GRIDRT_ASSERT
+  // What is asked stays until it is answered or given up.
+  logic [7:0] asked_id;
+  logic asked_set;
   always_ff @(posedge clk_i) begin
+    asked_id  <= request_id_i;
+    asked_set <= request_set_i;
     if (rst_ni) begin
       assert (!(body_write_i && request_valid_i));
+      assert (!(asked && request_valid_i) ||
+              (request_id_i == asked_id && request_set_i == asked_set));
     end
   end
 `endif

@@ -91,8 +91,9 @@ module gridrt_usb_reports (
 
   // A packet of a report that is set: its bytes go to the mailbox at once, unless it is in use.
   logic in_packet, refuse_packet, take_byte, ends_well, came, again;
-  assign take_byte = state == DATA && rx_valid_i && rx_next_i && !refuse_packet && !out_busy &&
-                     place != BYTES;
+  // With its first byte refuse_packet is still that of the packet before.
+  assign take_byte = state == DATA && rx_valid_i && rx_next_i && !(refuse_packet && in_packet) &&
+                     !out_busy && place != BYTES;
   // The host has not heard that its packet was taken.
   assign again = came && state != DATA && rx_ready_for_response_i;
   assign ends_well = state == DATA && rx_ready_for_response_i && !wrong && !rx_invalid_i;
@@ -167,6 +168,8 @@ module gridrt_usb_reports (
       endcase
       if (setup_i) begin
         tx_pid_o <= 1'b1;
+        refuse_packet <= 1'b0;
+        wrong <= 1'b0;
         place <= '0;
         came <= 1'b0;
         total <= (length_i < 16'(BYTES)) ? length_i[6:0] : BYTES;
@@ -239,7 +242,10 @@ module gridrt_usb_reports (
     end
   end
 
-  assign request_valid_o = (out == OUT_ASK) || ((state == ASK || state == PUT) && !out_busy);
+  // A request that follows another at once is another to the mailbox, too: its tag changes with the
+  // gap, or firmware's answer to the first would be taken for one to the second.
+  assign request_valid_o = (out == OUT_ASK) ||
+                           ((state == ASK || state == PUT) && !out_busy && !setup_i);
   assign request_set_o = (out == OUT_ASK) || state == PUT;
   assign request_id_o = (out == OUT_ASK) ? out_id : id;
   assign request_length_o = (out == OUT_ASK) ? out_place - 1'b1 : place - 1'b1;

@@ -2,7 +2,7 @@
 # on purpose, with short limits.
 gridrt_rtl_bench(rtl_board TOP gridrt_board FIRMWARE b12x2 DEFINES GRIDRT_TEST_HANG
   PARAMETERS B=12 PES=2 HANG_CLOCKS=20000 BUS_CLOCKS=20000
-  SOURCES board_firmware_test.cpp board_faults_test.cpp board_noise_test.cpp hostile_board.cpp
+  SOURCES board_firmware_test.cpp board_faults_test.cpp board_noise_test.cpp hostile_board.cpp known_image.cpp
           hostile_frames.cpp payloads.cpp
   LINK gridrt_driver gridrt_pe gridrt_image gridrt_scene gridrt_hal)
 # Its watch and its mailbox alone.

@@ -9,7 +9,6 @@
 #include <random>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -38,43 +37,6 @@ const KnownImage& first() {
 const KnownImage& second() {
   static const KnownImage only = make_known(board_image({4, 5, 3}, 30, 8, 0.7F));
   return only;
-}
-
-/// The board's answer to a frame, if one came.
-struct Reply {
-  bool came = false;
-  FrameType type = FrameType::kNoOp;
-  std::vector<std::byte> payload;
-};
-
-Reply ask(SimTransport& link, FrameReader& reader, std::span<const std::byte> frame,
-          std::uint32_t sequence) {
-  EXPECT_TRUE(link.send(frame));
-  std::array<std::byte, 4096> piece{};
-  for (;;) {
-    while (const auto event = reader.next()) {
-      const auto* got = std::get_if<Frame>(&*event);
-      if (got == nullptr || got->header.sequence != sequence) continue;
-      return {true, got->type(), {got->payload.begin(), got->payload.end()}};
-    }
-    const auto got = link.receive(piece, {});
-    EXPECT_TRUE(got) << got.error().message;
-    if (!got || *got == 0) return {};
-    reader.push(std::span(piece).first(*got));
-  }
-}
-
-/// NoOps until one is answered, as the device usb begins: an unfinished frame may swallow some.
-void synchronise(SimTransport& link, FrameReader& reader) {
-  constexpr std::uint32_t kAttempts = 8;
-  for (std::uint32_t i = 0; i < kAttempts; ++i) {
-    std::vector<std::byte> frame;
-    EXPECT_TRUE(append_frame(frame, FrameType::kNoOp, protocol::Layout::kNone, kSequence + i, {}));
-    const Reply reply = ask(link, reader, frame, kSequence + i);
-    if (reply.came && reply.type == FrameType::kNoOp) return;
-    if (testing::Test::HasFailure()) return;
-  }
-  ADD_FAILURE() << "no NoOp is answered";
 }
 
 struct Sum {
@@ -128,7 +90,7 @@ void run(std::uint64_t seed, Sum& sum) {
   }
   ASSERT_TRUE(set_report(link, protocol::ControlReport{.idle_clocks = kIdleClocks, .log = 0}));
   FrameReader reader;
-  synchronise(link, reader);
+  synchronise(link, reader, kSequence);
   const auto status = get_report<protocol::StatusReport>(link);
   ASSERT_TRUE(status);
   const auto boot = get_report<protocol::BootReport>(link);

@@ -12,21 +12,9 @@
 #include "hal/sim/board.hpp"
 #include "host/image/image.hpp"
 #include "tests/rtl/hostile_frames.hpp"
+#include "tests/rtl/known_image.hpp"
 
 namespace gridrt::rtl {
-
-/// An image that is told from others by its answers to known rays.
-struct KnownImage {
-  Image image;
-  std::vector<std::byte> frames;  ///< that load it
-  std::vector<std::byte> hits;    ///< the payload of the answer to known_rays(), from software PEs
-};
-
-KnownImage make_known(Image image);
-
-/// Rays whose answers are known.
-std::span<const protocol::RayCompact> known_rays();
-std::vector<std::byte> known_trace(std::uint32_t sequence);
 
 /// What was thrown and what came of it.
 struct NoiseCounts {

@@ -11,5 +11,6 @@ gridrt_rtl_bench(rtl_usb_ulpi TOP gridrt_usb_at_ulpi FILES gridrt_usb_at_ulpi.sv
 gridrt_rtl_bench(rtl_usb_tail TOP gridrt_usb_tail PARAMETERS PAUSE=30 SOURCES usb_tail_bench.cpp)
 # The whole device: USB block, soft core with its firmware, shell and engine.
 gridrt_rtl_bench(rtl_usb_device TOP gridrt_device LUNA FIRMWARE b12x2 PARAMETERS B=12 PES=2
-                 SOURCES usb_device_test.cpp
+                 SOURCES usb_device_test.cpp usb_noise_test.cpp hostile_usb.cpp hostile_frames.cpp
+                         known_image.cpp payloads.cpp
                  LINK gridrt_driver gridrt_pe gridrt_image gridrt_scene gridrt_hal fmt::fmt)

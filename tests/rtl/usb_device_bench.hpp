@@ -45,6 +45,7 @@ class DeviceBench {
   void tick(Utmi& pins) {
     device_->utmi_rx_active_i = pins.rx_active ? 1 : 0;
     device_->utmi_rx_valid_i = pins.rx_valid ? 1 : 0;
+    device_->utmi_rx_error_i = pins.rx_error ? 1 : 0;
     device_->utmi_rx_data_i = pins.rx_data;
     device_->utmi_line_state_i = pins.line_state;
     device_->utmi_tx_ready_i = pins.tx_ready ? 1 : 0;

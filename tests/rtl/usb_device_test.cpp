@@ -222,6 +222,38 @@ TEST(UsbDevice, SuspendResumeAndResetInFlight) {
   expect_the_words(bench);
 }
 
+TEST(UsbDevice, ReportsThatMeetAreBothWhole) {
+  DeviceBench bench;
+  ASSERT_TRUE(bench.host.enumerate());
+  Bytes nothing(64);
+  nothing[0] = protocol::CommandReport::kId;
+  nothing[1] = 77;
+  for (int delay = 0; delay < 2000; delay += 90) {
+    // Firmware reads an output report when a feature report comes: it is NAKed and comes again.
+    ASSERT_EQ(bench.host.write(2, nothing), Outcome::kDone);
+    bench.host.idle(delay);
+    const int naks = bench.host.naks;
+    EXPECT_EQ(bench.host.set_report({protocol::ResetReport::kId, 'R', 'E', 'S', 'T'}),
+              Outcome::kDone)
+        << delay << ", NAKs: " << bench.host.naks - naks;
+  }
+}
+
+TEST(UsbDevice, ARequestGivenUpDoesNotAnswerTheNext) {
+  DeviceBench bench;
+  ASSERT_TRUE(bench.host.enumerate());
+  const auto identity = bench.host.report<protocol::IdentityReport>();
+  const auto capabilities = bench.host.report<protocol::CapabilitiesReport>();
+  for (int delay = 0; delay < 3000; delay += 30) {
+    bench.host.give_up({0xA1, 1, 0x300 | protocol::IdentityReport::kId, usb::kHidInterface, 64});
+    bench.host.idle(delay);
+    EXPECT_EQ(bench.host.report<protocol::CapabilitiesReport>(), capabilities) << delay;
+    bench.host.give_up({0x21, 9, 0x300 | protocol::ResetReport::kId, usb::kHidInterface, 64});
+    bench.host.idle(delay);
+    EXPECT_EQ(bench.host.report<protocol::IdentityReport>(), identity) << delay;
+  }
+}
+
 TEST(UsbDevice, AnImageInFlashNeedsNoUpload) {
   protocol::CapabilitiesReport capabilities;
   {

@@ -32,6 +32,7 @@ struct Utmi {
   std::uint8_t rx_data = 0;
   bool rx_active = false;
   bool rx_valid = false;
+  bool rx_error = false;
   std::uint8_t line_state = 1;  ///< 0: SE0, 1: J, 2: K
   bool tx_ready = true;         ///< the PHY takes the device's byte
   bool tx_valid = false;        ///< of the device
@@ -137,15 +138,89 @@ class UsbHost {
     return in(0, status, empty, kPatience);
   }
 
+  /// Begins a control transfer and leaves it.
+  Outcome give_up(const Control& setup) { return start(setup); }
+
   /// A packet from or to an endpoint other than 0; the data toggle is kept. `patience`: tries.
   Outcome read(int endpoint, Bytes& packet, int patience) {
-    bool& toggle = toggles_[static_cast<std::size_t>(endpoint + 16)];
+    bool& toggle = toggles_[static_cast<std::size_t>(endpoint) + 16];
     const Outcome got = in(endpoint, toggle, packet, patience);
     if (got == Outcome::kDone) toggle = !toggle;
     return got;
   }
   Outcome write(int endpoint, const Bytes& packet, int patience = kPatience) {
     return out(endpoint, toggles_[static_cast<std::size_t>(endpoint)], packet, patience);
+  }
+
+  // Packets, for hosts that send others than they should.
+
+  static std::uint16_t crc5(unsigned value) {
+    unsigned crc = 0x1F;
+    for (int i = 0; i < 11; ++i) {
+      const unsigned bit = (value >> i ^ crc >> 4) & 1U;
+      crc = (crc << 1U & 0x1FU) ^ (bit != 0 ? 0x05U : 0U);
+    }
+    crc ^= 0x1F;
+    unsigned reversed = 0;
+    for (int i = 0; i < 5; ++i) reversed |= (crc >> i & 1U) << (4 - i);
+    return static_cast<std::uint16_t>(reversed);
+  }
+  static std::uint16_t crc16(std::span<const std::uint8_t> data) {
+    unsigned crc = 0xFFFF;
+    for (const std::uint8_t byte : data) {
+      crc ^= byte;
+      for (int i = 0; i < 8; ++i) crc = crc >> 1U ^ ((crc & 1U) != 0 ? 0xA001U : 0U);
+    }
+    return static_cast<std::uint16_t>(~crc);
+  }
+  static std::uint8_t pid_byte(Pid pid) {
+    const auto low = static_cast<unsigned>(pid);
+    return static_cast<std::uint8_t>(low | (~low & 0xFU) << 4U);
+  }
+  /// `error_at`: the byte at which the PHY reports an error.
+  void send_packet(const Bytes& bytes, std::size_t error_at = ~std::size_t{0}) {
+    if (chance(faults.lose_ours)) return idle(kGap);
+    sending_ = true;
+    pins_.line_state = 1;
+    pins_.rx_active = true;
+    step();
+    for (std::size_t i = 0; i < bytes.size(); ++i) {
+      pins_.rx_valid = true;
+      pins_.rx_data = bytes[i];
+      pins_.rx_error = i == error_at;
+      pins_.line_state = static_cast<std::uint8_t>(3 - pins_.line_state);
+      step();
+      pins_.rx_valid = pins_.rx_error = false;
+      for (int clock = 1; clock < byte_clocks(); ++clock) step();
+    }
+    pins_.rx_active = false;
+    pins_.line_state = idle_line_;
+    step();
+    sending_ = false;
+  }
+  /// `value`: address and endpoint, or the frame of an SOF; `spoil` goes into the CRC.
+  void token(Pid pid, unsigned value, unsigned spoil = 0) {
+    const unsigned word = value | (crc5(value) ^ spoil) << 11U;
+    send_packet(
+        {pid_byte(pid), static_cast<std::uint8_t>(word), static_cast<std::uint8_t>(word >> 8U)});
+  }
+  /// Whether the device sends at this moment.
+  [[nodiscard]] bool is_spoken_to() const { return pins_.tx_valid; }
+  /// What the device sends within its time; nothing if it is silent.
+  std::optional<Bytes> receive() {
+    Bytes bytes;
+    const int patience = full_speed_ ? kTurnaround + 10 * kByteAtFullSpeed : kTurnaround;
+    for (int i = 0; i < patience && !pins_.tx_valid; ++i) step();
+    while (pins_.tx_valid && bytes.size() < 4096) {
+      pins_.tx_ready = false;
+      for (int i = 1; i < byte_clocks(); ++i) step();
+      pins_.tx_ready = true;
+      bytes.push_back(pins_.tx_data);
+      step();
+    }
+    idle(kGap);
+    if (bytes.empty() || chance(faults.lose_theirs)) return std::nullopt;
+    return bytes;
   }
 
  private:
@@ -186,55 +261,7 @@ class UsbHost {
 
   bool chance(int percent) { return percent != 0 && static_cast<int>(random_() % 100) < percent; }
 
-  static std::uint16_t crc5(unsigned value) {
-    unsigned crc = 0x1F;
-    for (int i = 0; i < 11; ++i) {
-      const unsigned bit = (value >> i ^ crc >> 4) & 1U;
-      crc = (crc << 1U & 0x1FU) ^ (bit != 0 ? 0x05U : 0U);
-    }
-    crc ^= 0x1F;
-    unsigned reversed = 0;
-    for (int i = 0; i < 5; ++i) reversed |= (crc >> i & 1U) << (4 - i);
-    return static_cast<std::uint16_t>(reversed);
-  }
-  static std::uint16_t crc16(std::span<const std::uint8_t> data) {
-    unsigned crc = 0xFFFF;
-    for (const std::uint8_t byte : data) {
-      crc ^= byte;
-      for (int i = 0; i < 8; ++i) crc = crc >> 1U ^ ((crc & 1U) != 0 ? 0xA001U : 0U);
-    }
-    return static_cast<std::uint16_t>(~crc);
-  }
-  static std::uint8_t pid_byte(Pid pid) {
-    const auto low = static_cast<unsigned>(pid);
-    return static_cast<std::uint8_t>(low | (~low & 0xFU) << 4U);
-  }
-
-  void send_packet(const Bytes& bytes) {
-    if (chance(faults.lose_ours)) return idle(kGap);
-    sending_ = true;
-    pins_.line_state = 1;
-    pins_.rx_active = true;
-    step();
-    for (const std::uint8_t byte : bytes) {
-      pins_.rx_valid = true;
-      pins_.rx_data = byte;
-      pins_.line_state = static_cast<std::uint8_t>(3 - pins_.line_state);
-      step();
-      pins_.rx_valid = false;
-      for (int i = 1; i < byte_clocks(); ++i) step();
-    }
-    pins_.rx_active = false;
-    pins_.line_state = idle_line_;
-    step();
-    sending_ = false;
-  }
-  void token(Pid pid, unsigned value) {
-    const unsigned word = value | static_cast<unsigned>(crc5(value)) << 11U;
-    send_packet(
-        {pid_byte(pid), static_cast<std::uint8_t>(word), static_cast<std::uint8_t>(word >> 8U)});
-  }
-  void token(Pid pid, int endpoint) {
+  void token_to(int endpoint, Pid pid) {
     if (frames_ && clocks_ - last_frame_ > frame_clocks()) {
       last_frame_ = clocks_;
       token(Pid::kSof, static_cast<unsigned>(frame_++ / 8 & 0x7FF));
@@ -257,22 +284,6 @@ class UsbHost {
     idle(kGap);
   }
 
-  /// What the device sends within its time; nothing if it is silent.
-  std::optional<Bytes> receive() {
-    Bytes bytes;
-    const int patience = full_speed_ ? kTurnaround + 10 * kByteAtFullSpeed : kTurnaround;
-    for (int i = 0; i < patience && !pins_.tx_valid; ++i) step();
-    while (pins_.tx_valid && bytes.size() < 4096) {
-      pins_.tx_ready = false;
-      for (int i = 1; i < byte_clocks(); ++i) step();
-      pins_.tx_ready = true;
-      bytes.push_back(pins_.tx_data);
-      step();
-    }
-    idle(kGap);
-    if (bytes.empty() || chance(faults.lose_theirs)) return std::nullopt;
-    return bytes;
-  }
   static bool is(const std::optional<Bytes>& packet, Pid pid) {
     return packet && packet->size() == 1 && packet->front() == pid_byte(pid);
   }
@@ -287,7 +298,7 @@ class UsbHost {
                       static_cast<std::uint8_t>(c.length),
                       static_cast<std::uint8_t>(c.length >> 8U)};
     for (int attempt = 0; attempt < 50; ++attempt) {
-      token(Pid::kSetup, 0);
+      token_to(0, Pid::kSetup);
       data_packet(false, bytes);
       if (is(receive(), Pid::kAck)) return Outcome::kDone;
       ++retries;
@@ -298,7 +309,7 @@ class UsbHost {
   Outcome in(int endpoint, bool toggle, Bytes& data, int patience) {
     int silent = 0;
     for (int attempt = 0; attempt < patience && silent < 50; ++attempt) {
-      token(Pid::kIn, endpoint);
+      token_to(endpoint, Pid::kIn);
       const auto packet = receive();
       if (is(packet, Pid::kStall)) return Outcome::kStall;
       if (is(packet, Pid::kNak)) {
@@ -330,9 +341,9 @@ class UsbHost {
     for (int attempt = 0; attempt < patience && silent < 50; ++attempt) {
       if (ping) {
         ++pings;
-        token(Pid::kPing, endpoint);
+        token_to(endpoint, Pid::kPing);
       } else {
-        token(Pid::kOut, endpoint);
+        token_to(endpoint, Pid::kOut);
         data_packet(toggle, data);
       }
       const auto packet = receive();
