@@ -33,6 +33,7 @@ MEMORY = re.compile(r"(?:gen_pe\[(\d)\].*\.)?(u_vertices|u_resolve\.u_ids|u_fetc
 MEMORIES = ((("u_vertices", "u_resolve.u_ids"), (46, 22)), (("u_fetch", "u_indices"), (82, 70)))
 # Rows without logic, the columns of logic, and the LUTs of a tile.
 FREE_ROWS = (28, 38, 42, 50, 54, 62, 66, 74, 78)
+FEW_FREE_ROWS = FREE_ROWS[::2]  # of a design that needs the room
 COLUMNS = range(2, 125)
 LUTS = [f"SLICE{s}.K{k}" for s in "ABCD" for k in (0, 1)]
 UNUSED = "floorplan_unused_"  # the first letters of their cells' names
@@ -85,9 +86,9 @@ def place(cells):
     return placed
 
 
-def keep_free(cells):
-    """Puts LUTs without wires into FREE_ROWS."""
-    for row in FREE_ROWS:
+def keep_free(cells, rows):
+    """Puts LUTs without wires into rows."""
+    for row in rows:
         for column in COLUMNS:
             for lut in LUTS:
                 cells[f"{UNUSED}X{column}_Y{row}_{lut}"] = {
@@ -95,14 +96,15 @@ def keep_free(cells):
                     "connections": {}, "attributes": {"BEL": f"X{column}/Y{row}/{lut}"}}
 
 
-def fix(path):
-    """Writes all of it into a netlist; ends the program if that has no PE."""
+def fix(path, free_rows=FREE_ROWS):
+    """Writes all of it into a netlist; ends the program if that has no PE. A single PE needs no rows
+    without logic."""
     netlist = json.loads(path.read_text(encoding="utf-8"))
     top = max(netlist["modules"].values(), key=lambda m: len(m["cells"]))
     if not place(top["cells"]):
         sys.exit(f"floorplan: {path} has no slice of a PE")
     if any("gen_pe[1]" in name for name in top["cells"]):
-        keep_free(top["cells"])
+        keep_free(top["cells"], free_rows)
         top["settings"] = top.get("settings", {}) | {f"router2/{k}": v for k, v in ROUTER.items()}
     path.write_text(json.dumps(netlist), encoding="utf-8")
 

@@ -8,8 +8,6 @@ import re
 
 NEXTPNR = "nextpnr-ecp5"
 PART = ["--um5g-85k", "--speed", 8, "--package", "CABGA554"]
-# Paths as long as these are rare after placement, so they may weigh more.
-PLACER = ["--placer-heap-timingweight", 20, "--placer-heap-beta", 0.8]
 CLOCK = re.compile(r"Max frequency for clock\s+'[^']*': ([\d.]+) MHz")
 WIRES = re.compile(r"wirelen = (\d+)")
 
@@ -26,7 +24,7 @@ def place(run, root, netlist, arguments, numbers):
     def one(seed):
         placed = netlist.with_name(f"{netlist.stem}_placed_{seed}.json")
         log = placed.with_suffix(".log")
-        run(NEXTPNR, [*PART, *PLACER, *arguments, "--timing-allow-fail", "--seed", seed, "--no-route",
+        run(NEXTPNR, [*PART, *arguments, "--timing-allow-fail", "--seed", seed, "--no-route",
                       "--json", netlist, "--write", placed], log)
         text = (root / log).read_text(encoding="utf-8")
         return int(WIRES.findall(text)[-1]), seed, placed, min(map(float, CLOCK.findall(text)))
