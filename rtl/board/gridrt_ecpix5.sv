@@ -62,8 +62,8 @@ module gridrt_ecpix5 #(
     );
   end
 
-  logic [7:0] rx_data, tx_data;
-  logic rx_active, rx_valid, rx_error, tx_valid, tx_ready, busy, term_select;
+  logic [7:0] rx_data, tx_data, sent_data;
+  logic rx_active, rx_valid, rx_error, tx_valid, tx_ready, sent_valid, sent_ready, busy, term_select;
   logic [1:0] line_state, xcvr_select, op_mode;
   gridrt_ulpi u_ulpi (
       .clk_i(clk),
@@ -78,14 +78,29 @@ module gridrt_ecpix5 #(
       .utmi_rx_active_o(rx_active),
       .utmi_rx_valid_o(rx_valid),
       .utmi_rx_error_o(rx_error),
-      .utmi_tx_data_i(tx_data),
-      .utmi_tx_valid_i(tx_valid),
-      .utmi_tx_ready_o(tx_ready),
+      .utmi_tx_data_i(sent_data),
+      .utmi_tx_valid_i(sent_valid),
+      .utmi_tx_ready_o(sent_ready),
       .utmi_line_state_o(line_state),
       .utmi_busy_o(busy),
       .utmi_xcvr_select_i(xcvr_select),
       .utmi_term_select_i(term_select),
       .utmi_op_mode_i(op_mode)
+  );
+
+  // The pins' data come from registers near them, or the way to them would begin in the firmware's
+  // memories. A packet that ends is followed by others after a token only.
+  gridrt_skid #(
+      .WIDTH(8)
+  ) u_sent (
+      .clk_i(clk),
+      .rst_ni(ulpi_rst_n),
+      .in_valid_i(tx_valid),
+      .in_ready_o(tx_ready),
+      .in_data_i(tx_data),
+      .out_valid_o(sent_valid),
+      .out_ready_i(sent_ready),
+      .out_data_o(sent_data)
   );
 
   logic suspended, hears, waits, speaks, blocked, flash_clk;

@@ -33,7 +33,7 @@ def multiplier(name, at, low_signed):
     """One MULT18X18D: factors and product end at registers."""
     return f"""  MULT18X18D #(
       .REG_INPUTA_CLK("CLK0"), .REG_INPUTB_CLK("CLK0"), .REG_PIPELINE_CLK("CLK0"),
-      .SOURCEB_MODE("B_INPUT"), .RESETMODE("SYNC")
+      .SOURCEB_MODE("B_SHIFT"), .RESETMODE("SYNC")
   ) {name} (
       .CLK0(clk_i), .CE0(1'b1), .RST0(1'b0), .SIGNEDA(1'b1), .SIGNEDB({low_signed}),
       {bits("A", f"a{at}_i", 18)},

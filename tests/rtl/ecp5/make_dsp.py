@@ -40,7 +40,7 @@ module MULT18X18D #(
     {ports("output", ("ROA", 18), ("ROB", 18), ("P", 36), "SIGNEDP")}
 );
   if (REG_INPUTA_CLK != "CLK0" || REG_INPUTB_CLK != "CLK0" || REG_PIPELINE_CLK != "CLK0" ||
-      REG_OUTPUT_CLK != "NONE" || SOURCEB_MODE != "B_INPUT" || RESETMODE != "SYNC") begin : gen_unknown
+      REG_OUTPUT_CLK != "NONE" || SOURCEB_MODE != "B_SHIFT" || RESETMODE != "SYNC") begin : gen_unknown
     $error("MULT18X18D: only registers at the factors and in the pipeline are known here");
   end
   logic [17:0] a, b;
