@@ -17,15 +17,15 @@ def seeds(text):
     return [int(word) for word in text.split(",")]
 
 
-def place(run, root, netlist, arguments, numbers):
+def place(run, root, netlist, arguments, numbers, router):
     """Places a netlist with seeds of these numbers, as many at once as there are cores, and prints what
     comes of each. `run` runs a program with arguments below `root` and writes a log. Returns the seed
     with the shortest wires and the placed netlist, for route()."""
     def one(seed):
         placed = netlist.with_name(f"{netlist.stem}_placed_{seed}.json")
         log = placed.with_suffix(".log")
-        run(NEXTPNR, [*PART, *arguments, "--timing-allow-fail", "--seed", seed, "--no-route",
-                      "--json", netlist, "--write", placed], log)
+        run(NEXTPNR, [*PART, *arguments, "--timing-allow-fail", "--seed", seed, "--router", router,
+                      "--no-route", "--json", netlist, "--write", placed], log)
         text = (root / log).read_text(encoding="utf-8")
         return int(WIRES.findall(text)[-1]), seed, placed, min(map(float, CLOCK.findall(text)))
 
@@ -37,8 +37,8 @@ def place(run, root, netlist, arguments, numbers):
 
 
 def route(run, root, placed, arguments, stem):
-    """Routes a placed netlist, at the frequency that it was placed for. Returns nextpnr's report; writes
-    STEM.sdf (delays) and STEM.log."""
+    """Routes a placed netlist, with the router and for the frequency that place() was given: nextpnr
+    keeps them in the netlist. Returns its report; writes STEM.sdf (delays) and STEM.log."""
     report = stem.with_suffix(".report.json")
     run(NEXTPNR, [*PART, *arguments, "--timing-allow-fail", "--threads", os.cpu_count() or 1, "--no-pack",
                   "--no-place", "--json", placed, "--tmg-ripup", "--report", report, "--sdf",
