@@ -8,3 +8,5 @@ add_test(NAME rtl_lint COMMAND ${Python3_EXECUTABLE} -B ${CMAKE_CURRENT_LIST_DIR
 add_test(NAME rtl_parameters COMMAND ${Python3_EXECUTABLE} -B
   ${CMAKE_CURRENT_LIST_DIR}/parameters_test.py --verilator ${GRIDRT_VERILATOR}
   --protocol ${PROJECT_BINARY_DIR}/generated/gridrt_protocol_pkg.sv ${PROJECT_SOURCE_DIR}/rtl)
+# How the delays of a routed design are read.
+add_test(NAME rtl_pin_timing COMMAND ${Python3_EXECUTABLE} -B ${CMAKE_CURRENT_LIST_DIR}/pin_timing_test.py)
