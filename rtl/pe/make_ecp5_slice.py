@@ -30,12 +30,14 @@ def bits(port, wire, count, first=0):
 
 
 def multiplier(name, at, low_signed):
-    """One MULT18X18D: factors and product end at registers."""
+    """One MULT18X18D: factors and product end at registers. SOURCEA and SOURCEB choose the factors that
+    come from the fabric; nextpnr ties neither."""
     return f"""  MULT18X18D #(
       .REG_INPUTA_CLK("CLK0"), .REG_INPUTB_CLK("CLK0"), .REG_PIPELINE_CLK("CLK0"),
       .SOURCEB_MODE("B_SHIFT"), .RESETMODE("SYNC")
   ) {name} (
       .CLK0(clk_i), .CE0(1'b1), .RST0(1'b0), .SIGNEDA(1'b1), .SIGNEDB({low_signed}),
+      .SOURCEA(1'b0), .SOURCEB(1'b0),
       {bits("A", f"a{at}_i", 18)},
       {bits("B", f"b{at}_i", 18)},
       {bits("ROA", f"factors{at}", 18)},

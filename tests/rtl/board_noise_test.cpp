@@ -116,29 +116,21 @@ void run(std::uint64_t seed, Sum& sum) {
 
 TEST(BoardNoise, AnImageIsRightOrNotThereAndTheBoardIsAsNew) {
   ASSERT_NE(first().hits, second().hits);
-  const std::uint64_t begin = number_of("GRIDRT_NOISE_SEED", 0);
-  const std::uint64_t schedules = number_of("GRIDRT_NOISE_SCHEDULES", kMix);
+  const Seeds seeds(kMix);
   Sum sum;
-  for (std::uint64_t seed = begin; seed < begin + schedules; ++seed) {
-    // An assertion of the RTL ends the program.
-    std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
-    std::fflush(stdout);
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    run(seed, sum);
-    if (HasFailure()) break;
-  }
+  seeds.run([&](std::uint64_t seed) { run(seed, sum); });
   const auto n = [](std::uint64_t x) { return static_cast<unsigned long long>(x); };
   const NoiseCounts& c = sum.noise;
   std::printf(
       "seeds %llu to %llu: %llu frames of %llu bytes, %llu reports (%llu refused, %llu given "
       "up), %llu Resets, %llu commands, %llu hangs\n",
-      n(begin), n(begin + schedules - 1), n(c.frames), n(c.bytes), n(c.reports), n(c.refused),
-      n(c.given_up), n(c.resets), n(c.commands), n(c.hangs));
+      n(seeds.begin), n(seeds.begin + seeds.count - 1), n(c.frames), n(c.bytes), n(c.reports),
+      n(c.refused), n(c.given_up), n(c.resets), n(c.commands), n(c.hangs));
   std::printf(
       "known rays meanwhile: %llu times right, %llu times an error; afterwards the image of "
       "before %llu times, another %llu times, none %llu times; %llu uploads\n",
       n(c.right), n(c.errors), n(sum.kept), n(sum.replaced), n(sum.empty), n(sum.uploads));
-  if (schedules < kMix) return;
+  if (seeds.count < kMix) return;
   EXPECT_GT(c.right, 0U);
   EXPECT_GT(sum.kept, 0U);
   EXPECT_GT(sum.empty, 0U);

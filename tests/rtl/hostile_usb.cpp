@@ -258,10 +258,7 @@ void HostileUsb::frames() {
   // may have no configuration, so that nothing of it arrives.
   constexpr int kPatience = 40;
   for (std::size_t at = 0; at < out.size(); at += usb::kBulkPacketHigh) {
-    const auto piece =
-        std::span(out).subspan(at, std::min<std::size_t>(out.size() - at, usb::kBulkPacketHigh));
-    Bytes packet;
-    for (const std::byte b : piece) packet.push_back(std::to_integer<std::uint8_t>(b));
+    const Bytes packet = host_.packet_at(out, at);
     if (host_.write(1, packet, kPatience) != Outcome::kDone) return;
     Bytes got;
     if (below(2) == 0) (void)host_.read(1, got, 2);

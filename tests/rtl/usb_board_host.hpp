@@ -59,6 +59,14 @@ class UsbBoardHost : public UsbHost {
     return static_cast<protocol::SelfTestState>(report<protocol::SelfTestReport>().state);
   }
 
+  /// The bytes from one on that go into a bulk packet.
+  [[nodiscard]] Bytes packet_at(std::span<const std::byte> bytes, std::size_t at) const {
+    Bytes packet;
+    for (const std::byte b : bytes.subspan(at, std::min(bulk_packet_, bytes.size() - at))) {
+      packet.push_back(std::to_integer<std::uint8_t>(b));
+    }
+    return packet;
+  }
   /// Sends bytes over bulk OUT and reads bulk IN meanwhile, until `bytes` have come or it is
   /// silent.
   Bytes exchange(std::span<const std::byte> frames, std::size_t bytes) {
@@ -67,13 +75,9 @@ class UsbBoardHost : public UsbHost {
     std::size_t sent = 0;
     while ((got.size() < bytes || sent < frames.size()) && silent < 2000) {
       if (sent < frames.size()) {
-        const std::size_t count = std::min(bulk_packet_, frames.size() - sent);
-        Bytes packet(count);
-        for (std::size_t i = 0; i < count; ++i) {
-          packet[i] = std::to_integer<std::uint8_t>(frames[sent + i]);
-        }
+        const Bytes packet = packet_at(frames, sent);
         if (write(1, packet) != Outcome::kDone) return got;
-        sent += count;
+        sent += packet.size();
       }
       Bytes packet;
       if (read(1, packet, 1) == Outcome::kDone) {

@@ -16,15 +16,11 @@ class UsbCable final : public Transport {
 
   Result<void> send(std::span<const std::byte> bytes) override {
     for (std::size_t at = 0; at < bytes.size(); at += usb::kBulkPacketHigh) {
-      Bytes packet;
-      for (const std::byte b :
-           bytes.subspan(at, std::min<std::size_t>(bytes.size() - at, usb::kBulkPacketHigh))) {
-        packet.push_back(std::to_integer<std::uint8_t>(b));
-      }
+      const Bytes packet = host_.packet_at(bytes, at);
       Outcome sent = Outcome::kTimeout;
       for (int i = 0; i < kPatience && sent == Outcome::kTimeout; ++i) {
         sent = host_.write(1, packet, kTries);
-        (void)listen(1);  // else a board with answers takes nothing more
+        listen(1);  // else a board with answers takes nothing more
       }
       if (sent != Outcome::kDone) return fail(ErrorKind::kTimeout, "bulk OUT takes no packet");
     }
@@ -32,7 +28,7 @@ class UsbCable final : public Transport {
   }
   Result<std::size_t> receive(std::span<std::byte> out,
                               std::chrono::milliseconds /*timeout*/) override {
-    if (heard_.empty()) (void)listen(kSilence);
+    if (heard_.empty()) listen(kSilence);
     const std::size_t count = std::min(out.size(), heard_.size());
     std::copy_n(heard_.begin(), count, out.begin());
     heard_.erase(heard_.begin(), heard_.begin() + static_cast<std::ptrdiff_t>(count));
@@ -56,14 +52,11 @@ class UsbCable final : public Transport {
   static constexpr int kPatience = 1000;  ///< rounds of them
   static constexpr int kSilence = 2000;   ///< tokens until the board counts as silent
 
-  bool listen(int tries) {
+  void listen(int tries) {
     Bytes packet;
-    bool any = false;
     while (host_.read(1, packet, tries) == Outcome::kDone && !packet.empty()) {
       for (const std::uint8_t byte : packet) heard_.push_back(static_cast<std::byte>(byte));
-      any = true;
     }
-    return any;
   }
   static Result<void> told(Outcome outcome) {
     if (outcome == Outcome::kDone) return {};

@@ -98,26 +98,18 @@ void run(std::uint64_t seed, Sum& sum) {
 }
 
 TEST(UsbNoise, AnImageIsRightOrNotThereAndTheDeviceIsAsNew) {
-  const std::uint64_t begin = number_of("GRIDRT_NOISE_SEED", 0);
-  const std::uint64_t schedules = number_of("GRIDRT_NOISE_SCHEDULES", kKinds);
+  const Seeds seeds(kKinds);
   Sum sum;
-  for (std::uint64_t seed = begin; seed < begin + schedules; ++seed) {
-    // An assertion of the RTL ends the program.
-    std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
-    std::fflush(stdout);
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    run(seed, sum);
-    if (HasFailure()) break;
-  }
+  seeds.run([&](std::uint64_t seed) { run(seed, sum); });
   const auto n = [](std::uint64_t x) { return static_cast<unsigned long long>(x); };
   const UsbNoiseCounts& c = sum.noise;
   std::printf(
       "seeds %llu to %llu: %llu wrong packets, %llu requests, %llu frames, %llu reports, %llu "
       "resets of the bus; %llu packets of the device; the image was kept %llu times, lost %llu\n",
-      n(begin), n(begin + schedules - 1), n(c.packets), n(c.requests), n(c.frames), n(c.reports),
-      n(c.resets), n(c.answered), n(sum.kept), n(sum.lost));
+      n(seeds.begin), n(seeds.begin + seeds.count - 1), n(c.packets), n(c.requests), n(c.frames),
+      n(c.reports), n(c.resets), n(c.answered), n(sum.kept), n(sum.lost));
   EXPECT_GT(c.answered, 0U);
-  if (schedules < kKinds) return;
+  if (seeds.count < kKinds) return;
   EXPECT_GT(sum.kept, 0U);
 }
 

@@ -36,7 +36,8 @@ module MULT18X18D #(
     parameter SOURCEB_MODE = "B_SHIFT",
     parameter RESETMODE = "SYNC"
 ) (
-    {ports("input", "CLK0", "CE0", "RST0", "SIGNEDA", "SIGNEDB", ("A", 18), ("B", 18))},
+    {ports("input", "CLK0", "CE0", "RST0", "SIGNEDA", "SIGNEDB", "SOURCEA", "SOURCEB",
+           ("A", 18), ("B", 18))},
     {ports("output", ("ROA", 18), ("ROB", 18), ("P", 36), "SIGNEDP")}
 );
   if (REG_INPUTA_CLK != "CLK0" || REG_INPUTB_CLK != "CLK0" || REG_PIPELINE_CLK != "CLK0" ||
@@ -52,8 +53,9 @@ module MULT18X18D #(
       b <= '0;
       product <= '0;
     end else if (CE0) begin
-      a <= {vector("A", 18)};
-      b <= {vector("B", 18)};
+      // Else the factors are those of the neighbour, which is not modelled.
+      a <= SOURCEA ? 18'h2A5A5 : {vector("A", 18)};
+      b <= SOURCEB ? 18'h2A5A5 : {vector("B", 18)};
       product <= 36'($signed({{SIGNEDA && a[17], a}}) * $signed({{SIGNEDB && b[17], b}}));
     end
   end
