@@ -64,6 +64,7 @@ Result<LatticeScene> make_lattice_scene(const Scene& scene, const ImageOptions& 
     return std::unexpected(std::move(good.error()));
   }
   out.local = make_local(scene, *lattice);
+  out.lights = scene.lights;
   return out;
 }
 

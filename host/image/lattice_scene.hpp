@@ -6,9 +6,10 @@
 
 namespace gridrt {
 
-/// A scene's triangles by local id, and a cut that lacks grid, lists and owners.
+/// A scene's triangles by local id, its lights, and a cut that lacks grid, lists and owners.
 struct LatticeScene {
   LocalTriangles local;
+  std::vector<Light> lights;  ///< scene units
   Cut cut;
 };
 

@@ -74,7 +74,7 @@ bool may_fit(const Cut& cut, const VoxelGrid& grid, const VoxelLists& lists) {
 class Search {
  public:
   explicit Search(const LatticeScene& scene)
-      : scene_(scene), sample_(scene.cut.lattice, scene.local.triangles) {}
+      : scene_(scene), sample_(scene.cut.lattice, scene.local.triangles, scene.lights) {}
 
   Result<void> run();
   Result<Image> pack() const;

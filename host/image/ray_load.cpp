@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 #include <glm/geometric.hpp>
@@ -18,26 +19,36 @@ namespace {
 constexpr std::size_t kFewestRays = 32;  // a view
 constexpr std::size_t kMostRays = 400;
 constexpr std::size_t kTrianglesPerRay = 8;
-/// Where rays of a view go: to one of the 26 neighbours of a voxel.
-constexpr std::size_t kViews = kRayGroups / 2;
 /// Rays of a view, and lights, spread around their direction as a camera close by and lights here
 /// and there would have it: by so much of it per axis.
 constexpr double kSpread = 0.4;
-constexpr double kTraversalUnits = 4.0;  ///< of the board: a block a clock each
-constexpr double kExpanders = 2.0;       ///< a voxel a clock each
-constexpr std::size_t kRead = 8;         ///< references that a PE reads a clock
+/// Of the lights, those of the scene, if it has so many.
+constexpr std::size_t kOwnLights = kLights - 1;
+constexpr double kTraversalUnits = 3.0;  ///< of the board: a block a clock each
+/// What a clock of a shadow ray counts against one of a primary ray: their budgets are 5.5
+/// and 3.25.
+constexpr double kShadowWeight = 0.6;
+constexpr double kExpanders = 2.0;  ///< a voxel a clock each
+constexpr std::size_t kRead = 8;    ///< references that a PE reads a clock
 
+/// Where rays of a view go: to one of the 26 neighbours of a voxel.
 glm::dvec3 direction_of(std::size_t view) {
   const auto cell = static_cast<int>(view < kViews / 2 ? view : view + 1);  // 13 is the middle
   return glm::normalize(glm::dvec3{cell % 3 - 1, cell / 3 % 3 - 1, cell / 9 - 1});
 }
 
-/// Towards the light of a view: from aside, and from what faces both.
-glm::dvec3 light_of(std::size_t view) {
+/// Towards light `number` of a view that is none of the scene's: from aside, and from what faces
+/// both.
+glm::dvec3 light_around(std::size_t view, std::size_t number) {
   const glm::dvec3 d = direction_of(view);
   const glm::dvec3 other = view % 2 == 0 ? glm::dvec3{0.36, 0.48, 0.8} : glm::dvec3{-0.8, 0.6, 0.0};
-  return glm::normalize(glm::cross(d, other)) - 0.4 * d;
+  const glm::dvec3 x = glm::normalize(glm::cross(d, other));
+  const glm::dvec3 y = glm::cross(d, x);
+  const double angle = 2.0 * std::numbers::pi * static_cast<double>(number) / kLights;
+  return std::cos(angle) * x + std::sin(angle) * y - 0.4 * d;
 }
+
+constexpr double power4(double x) { return x * x * x * x; }
 
 glm::dvec3 spread(const glm::dvec3& direction, Uniform& uniform) {
   const double wide = 2.0 * kSpread * glm::length(direction);
@@ -149,8 +160,9 @@ class Walk {
 
 }  // namespace
 
-RaySample::RaySample(const Lattice& lattice, std::span<const LatticeTriangle> triangles)
-    : lattice_(lattice), triangles_(triangles) {
+RaySample::RaySample(const Lattice& lattice, std::span<const LatticeTriangle> triangles,
+                     std::span<const Light> lights)
+    : lattice_(lattice), triangles_(triangles), lights_(lights) {
   const std::size_t rays = std::clamp(triangles.size() / kTrianglesPerRay, kFewestRays, kMostRays);
   for (std::size_t view = 0; view < kViews; ++view) {
     for (std::size_t i = 0; i < rays; ++i) {
@@ -165,9 +177,28 @@ RaySample::RaySample(const Lattice& lattice, std::span<const LatticeTriangle> tr
   }
 }
 
-void RaySample::add_shadow_ray(const Sample& primary) {
+glm::dvec3 RaySample::light_direction(const Sample& primary, std::size_t number) {
+  const std::size_t own = std::min(lights_.size(), kOwnLights);
+  if (number >= own) return spread(light_around(primary.group, number), uniform_);
+  const Light& light = lights_[number * lights_.size() / own];
+  const double along = std::ldexp(static_cast<double>(primary.hit.quotient), -24);
+  const glm::dvec3 at =
+      glm::dvec3{primary.segment.p0} + along * glm::dvec3{primary.segment.p1 - primary.segment.p0};
+  const int most = std::max({lattice_.scale[0], lattice_.scale[1], lattice_.scale[2]});
+  glm::dvec3 out{0.0};
+  for (int a = 0; a < 3; ++a) {
+    const double from =
+        static_cast<double>(lattice_.lo[a]) + std::ldexp(at[a] - 2.0, -lattice_.scale[a]);
+    const double way =
+        light.kind == Light::Kind::kPoint ? light.position[a] - from : -light.direction[a];
+    out[a] = std::ldexp(way, lattice_.scale[a] - most);
+  }
+  return out;
+}
+
+void RaySample::add_shadow_ray(const Sample& primary, std::size_t number) {
   const LatticeTriangle& left = triangles_[primary.hit.id];
-  const glm::dvec3 light = spread(light_of(primary.group), uniform_);
+  const glm::dvec3 light = light_direction(primary, number);
   Ray ray;
   for (int a = 0; a < 3; ++a) {
     ray.direction[a] = std::ldexp(light[a], std::max(-1000, -lattice_.scale[a]));
@@ -187,8 +218,9 @@ void RaySample::add_shadow_ray(const Sample& primary) {
   if (!validate(ray)) return;
   const Segment segment = make_secondary_segment(lattice_, ray, *origin, left, primary.hit.id);
   if (segment.is_miss()) return;
-  samples_.push_back({segment, kViews + primary.group, {}});
-  rays_[kViews + primary.group] += 1.0;
+  const std::size_t group = kViews * (1 + number) + primary.group;
+  samples_.push_back({segment, group, {}});
+  rays_[group] += 1.0;
 }
 
 void RaySample::find_hits(const VoxelGrid& grid, const VoxelLists& lists) {
@@ -210,7 +242,8 @@ void RaySample::find_hits(const VoxelGrid& grid, const VoxelLists& lists) {
           return true;
         });
     samples_[i] = s;
-    if (s.group < kViews && s.hit.id != kNoTriangle) add_shadow_ray(s);
+    if (s.group >= kViews || s.hit.id == kNoTriangle) continue;
+    for (std::size_t light = 0; light < kLights; ++light) add_shadow_ray(s, light);
   }
   hits_known_ = true;
 }
@@ -221,11 +254,9 @@ GridLoad RaySample::measure(const VoxelGrid& grid, const VoxelLists& lists) {
   GridLoad load;
   for (std::vector<float>& work : load.work) work.assign(grid.cells(), 0.0F);
   if (samples_.empty()) return load;
-  double steps = 0.0;
-  double tasks = 0.0;
   for (const Sample& s : samples_) {
-    const auto share = static_cast<float>(1.0 / rays_[s.group]);
-    steps += walk.run(s.segment, s.hit.quotient, [&](const VoxelVisit& v) {
+    const double share = 1.0 / rays_[s.group];
+    load.steps[s.group] += share * walk.run(s.segment, s.hit.quotient, [&](const VoxelVisit& v) {
       const std::span<const VoxelReference> list = walk.list(v.voxel);
       if (list.empty()) return;
       const CellSet cells = ray_cells(grid, s.segment.p0, s.segment.p1, v);
@@ -233,29 +264,30 @@ GridLoad RaySample::measure(const VoxelGrid& grid, const VoxelLists& lists) {
       for (const VoxelReference& r : list) {
         if ((cells_of(r.quarters) & cells) != 0) ++tests;
       }
-      tasks += 1.0;
+      load.tasks[s.group] += share;
       const std::size_t clocks = std::max((list.size() + kRead - 1) / kRead, tests);
-      load.work[s.group][grid.index(v.voxel)] += share * static_cast<float>(clocks);
+      load.work[s.group][grid.index(v.voxel)] +=
+          static_cast<float>(share * static_cast<double>(clocks));
     });
   }
-  load.steps = steps / static_cast<double>(samples_.size());
-  load.tasks = tasks / static_cast<double>(samples_.size());
   return load;
 }
 
 double estimate_clocks(const GridLoad& load, std::span<const std::uint8_t> owners, int pes) {
-  double busiest = 0.0;
-  std::vector<double> sums(static_cast<std::size_t>(pes));
-  for (const std::vector<float>& work : load.work) {
-    std::ranges::fill(sums, 0.0);
-    for (std::size_t i = 0; i < work.size(); ++i) sums[owners[i]] += work[i];
-    busiest += *std::ranges::max_element(sums) / static_cast<double>(kRayGroups);
-  }
   double sum = 0.0;
-  for (const double part : {load.steps / kTraversalUnits, load.tasks / kExpanders, busiest}) {
-    sum += part * part * part * part;
+  std::vector<double> busy(static_cast<std::size_t>(pes));
+  for (std::size_t g = 0; g < kRayGroups; ++g) {
+    std::ranges::fill(busy, 0.0);
+    for (std::size_t i = 0; i < load.work[g].size(); ++i) busy[owners[i]] += load.work[g][i];
+    double clocks = 0.0;
+    for (const double part : {load.steps[g] / kTraversalUnits, load.tasks[g] / kExpanders,
+                              *std::ranges::max_element(busy)}) {
+      clocks += power4(part);
+    }
+    // Means of fourth powers, of views and of lights.
+    sum += g < kViews ? clocks : clocks * power4(kShadowWeight) / kLights;
   }
-  return std::sqrt(std::sqrt(sum));
+  return std::sqrt(std::sqrt(sum / (2.0 * kViews)));
 }
 
 }  // namespace gridrt

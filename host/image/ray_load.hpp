@@ -12,29 +12,35 @@
 #include "host/grid/segment.hpp"
 #include "host/grid/voxel_grid.hpp"
 #include "host/image/uniform.hpp"
+#include "host/scene/scene.hpp"
 
 namespace gridrt {
 
 /// Groups of sample rays, each of which is to keep all PEs busy: primary rays from 26 directions,
-/// then shadow rays from what each of these hits.
-inline constexpr std::size_t kRayGroups = 52;
+/// then shadow rays from what each of these hits, light by light: some of the scene's, then others
+/// around it.
+inline constexpr std::size_t kViews = 26;
+inline constexpr std::size_t kLights = 4;
+inline constexpr std::size_t kRayGroups = kViews * (1 + kLights);
 
-/// What the sample rays do on one grid; numbers are means of a ray. Work is the clocks that a PE
-/// spends with a voxel's list: it reads eight references a clock and tests one.
+/// What the sample rays do on one grid; numbers are means of a ray of a group. Work is the clocks
+/// that a PE spends with a voxel's list: it reads eight references a clock and tests one.
 struct GridLoad {
-  double steps = 0.0;  ///< blocks looked at
-  double tasks = 0.0;  ///< voxels with triangles that are met
+  std::array<double, kRayGroups> steps{};  ///< blocks looked at
+  std::array<double, kRayGroups> tasks{};  ///< voxels with triangles that are met
   /// Work by voxel, for the rays of each group.
   std::array<std::vector<float>, kRayGroups> work;
 };
 
 /// Primary rays through the whole lattice box, evenly spread over what is seen of it from each
-/// direction, as a camera that has the box in view would send them, and shadow rays towards a light
-/// that shines from another direction; the same ones for the same scene.
+/// direction, as a camera that has the box in view would send them, and shadow rays towards the
+/// scene's lights and towards some that shine from other directions; the same ones for the same
+/// scene.
 class RaySample {
  public:
-  /// `triangles` outlive the sample; lattices of at most 17 bits.
-  RaySample(const Lattice& lattice, std::span<const LatticeTriangle> triangles);
+  /// `triangles` and `lights` outlive the sample; lattices of at most 17 bits.
+  RaySample(const Lattice& lattice, std::span<const LatticeTriangle> triangles,
+            std::span<const Light> lights);
 
   /// Walks every ray up to its closest hit. `lists` are those of bin_triangles for this grid.
   GridLoad measure(const VoxelGrid& grid, const VoxelLists& lists);
@@ -46,10 +52,13 @@ class RaySample {
     HitKey hit;  ///< the closest one
   };
   void find_hits(const VoxelGrid& grid, const VoxelLists& lists);
-  void add_shadow_ray(const Sample& primary);
+  /// From a hit towards light `number` (below kLights), along the lattice's axes; any length.
+  glm::dvec3 light_direction(const Sample& primary, std::size_t number);
+  void add_shadow_ray(const Sample& primary, std::size_t number);
 
   Lattice lattice_;
   std::span<const LatticeTriangle> triangles_;
+  std::span<const Light> lights_;
   std::vector<Sample> samples_;
   Uniform uniform_;
   std::array<double, kRayGroups> rays_{};  ///< number by group
@@ -57,7 +66,8 @@ class RaySample {
 };
 
 /// Clocks of a ray, estimated: the parts of a device work at the same time, so that the busiest one
-/// decides, and a little more the closer the others come. The busiest PE counts, group by group.
+/// decides, and a little more the closer the others come. Group by group, of which dear ones count
+/// more; views as much as lights.
 /// `owners` are in [0, pes).
 double estimate_clocks(const GridLoad& load, std::span<const std::uint8_t> owners, int pes);
 

@@ -48,9 +48,9 @@ std::vector<std::uint8_t> owners_of(const Image& image) {
   return owners;
 }
 
-double clocks_of(const Image& image) {
+double clocks_of(const Scene& scene, const Image& image) {
   const auto triangles = decode_triangles(image);
-  RaySample sample(image.lattice(), triangles->triangles);
+  RaySample sample(image.lattice(), triangles->triangles, scene.lights);
   const VoxelGrid grid = image.grid();
   const VoxelLists lists = bin_triangles(grid, triangles->triangles);
   return estimate_clocks(sample.measure(grid, lists), owners_of(image), image.header.pes);
@@ -63,14 +63,14 @@ TEST(Measured, CheaperThanCoarserGridsAndPlainDealing) {
     const Image image = must_build(scene, compact());
     EXPECT_EQ(static_cast<Mapping>(image.header.mapping), Mapping::kMeasured);
     EXPECT_TRUE(verify_image(image)) << verify_image(image).error().message;
-    const double clocks = clocks_of(image);
+    const double clocks = clocks_of(scene, image);
     ImageOptions other = compact();
     other.grid = image.grid().count;
     const Image plain = must_build(scene, other);
     EXPECT_EQ(static_cast<Mapping>(plain.header.mapping), Mapping::kBoxes);
-    EXPECT_LE(clocks, clocks_of(plain)) << spec;
+    EXPECT_LE(clocks, clocks_of(scene, plain)) << spec;
     other.grid = glm::max(image.grid().count / 2, glm::ivec3{1});
-    EXPECT_LT(clocks, clocks_of(must_build(scene, other))) << spec;
+    EXPECT_LT(clocks, clocks_of(scene, must_build(scene, other))) << spec;
   }
 }
 
@@ -105,10 +105,10 @@ TEST(Measured, EvensOutWithinMemories) {
   const Scene scene = must_load("builtin:teapot?tessellation=14");
   const auto lattice_scene = make_lattice_scene(scene, compact());
   ASSERT_TRUE(lattice_scene);
-  const auto& [local, cut] = *lattice_scene;
+  const auto& [local, lights, cut] = *lattice_scene;
   MeasuredGrid measured{must_build(scene, compact()).grid(), {}, {}, {}};
   measured.lists = bin_triangles(measured.grid, local.triangles);
-  measured.load = RaySample(cut.lattice, local.triangles).measure(measured.grid, measured.lists);
+  measured.load = RaySample(cut.lattice, local.triangles, lights).measure(measured.grid, measured.lists);
   find_shares(local.triangles, cut.lattice, measured);
   for (const int boxes : {48, 12}) {  // a PE: copies fill the memories, and large boxes
     const auto cuts = balanced_boxes(measured.grid, measured.lists, boxes * cut.pes);
