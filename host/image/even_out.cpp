@@ -20,7 +20,9 @@ constexpr double kCold = 1e-6;
 /// uneven.
 constexpr double kOverfull = 4.0;
 constexpr double kFull = 0.998;  ///< some room, so that the end of the way fits
-constexpr double kFar = 0.05;    ///< part of the moves that go to any PE
+/// A group of rays against a region, of which there are more, each of few voxels and so less even.
+constexpr float kRayWeight = 60.0F;
+constexpr double kFar = 0.05;  ///< part of the moves that go to any PE
 
 struct Load {
   double references = 0.0;
@@ -100,13 +102,17 @@ class Annealer {
             over(l.vertices, cut_.memory.vertices));
   }
 
-  /// How much less even the shares get: the sum of their squares.
+  /// How much less even the shares get: the weighted sum of their squares.
   [[nodiscard]] double unevenness(std::size_t voxel, std::size_t from, std::size_t to) const {
     const Shares& v = measured_.shares[voxel];
-    float sum = 0.0F;
-    for (std::size_t g = 0; g < v.size(); ++g) {
-      sum += v[g] * (shares_[to][g] - shares_[from][g] + v[g]);
-    }
+    const auto sum_of = [&](std::size_t first, std::size_t end) {
+      float sum = 0.0F;
+      for (std::size_t g = first; g < end; ++g) {
+        sum += v[g] * (shares_[to][g] - shares_[from][g] + v[g]);
+      }
+      return sum;
+    };
+    const float sum = kRayWeight * sum_of(0, kRayGroups) + sum_of(kRayGroups, v.size());
     return 2.0 * static_cast<double>(sum) * static_cast<double>(cut_.pes) /
            static_cast<double>(v.size());
   }

@@ -86,19 +86,21 @@ TEST(Measured, ThirteenThousandTrianglesFit) {
   }
 }
 
-/// Of the groups of rays, facings and regions: how much more than its part the busiest PE has.
-double unevenness(const MeasuredGrid& measured, std::span<const std::uint8_t> owners, int pes) {
+/// Of the first groups, which are those of rays, then of facings and regions: how much more than
+/// its part the busiest PE has.
+double unevenness(const MeasuredGrid& measured, std::span<const std::uint8_t> owners, int pes,
+                  std::size_t groups) {
   std::vector<Shares> held(static_cast<std::size_t>(pes), Shares{});
   for (std::size_t i = 0; i < owners.size(); ++i) {
-    for (std::size_t g = 0; g < held[0].size(); ++g) held[owners[i]][g] += measured.shares[i][g];
+    for (std::size_t g = 0; g < groups; ++g) held[owners[i]][g] += measured.shares[i][g];
   }
   double sum = 0.0;
-  for (std::size_t g = 0; g < held[0].size(); ++g) {
+  for (std::size_t g = 0; g < groups; ++g) {
     double most = 0.0;
     for (const Shares& h : held) most = std::max(most, static_cast<double>(h[g]));
     sum += most * pes - 1.0;
   }
-  return sum / static_cast<double>(held[0].size());
+  return sum / static_cast<double>(groups);
 }
 
 TEST(Measured, EvensOutWithinMemories) {
@@ -108,17 +110,59 @@ TEST(Measured, EvensOutWithinMemories) {
   const auto& [local, lights, cut] = *lattice_scene;
   MeasuredGrid measured{must_build(scene, compact()).grid(), {}, {}, {}};
   measured.lists = bin_triangles(measured.grid, local.triangles);
-  measured.load = RaySample(cut.lattice, local.triangles, lights).measure(measured.grid, measured.lists);
+  measured.load =
+      RaySample(cut.lattice, local.triangles, lights).measure(measured.grid, measured.lists);
   find_shares(local.triangles, cut.lattice, measured);
   for (const int boxes : {48, 12}) {  // a PE: copies fill the memories, and large boxes
     const auto cuts = balanced_boxes(measured.grid, measured.lists, boxes * cut.pes);
     std::vector<std::uint8_t> owners = deal_by_work(measured, cuts, cut.pes);
     EXPECT_EQ(dealing_fits(local, cut, measured, owners), boxes == 12);
-    const double before = unevenness(measured, owners, cut.pes);
+    const auto uneven = [&](std::size_t groups) {
+      return unevenness(measured, owners, cut.pes, groups);
+    };
+    const double of_rays = uneven(kRayGroups);
+    const double of_all = uneven(Shares{}.size());
     even_out(local, cut, measured, owners);
     EXPECT_TRUE(dealing_fits(local, cut, measured, owners)) << boxes;
-    const double allowed = boxes == 12 ? 0.7 * before : 2.0 * before;
-    EXPECT_LT(unevenness(measured, owners, cut.pes), allowed) << boxes;
+    EXPECT_LT(uneven(kRayGroups), (boxes == 12 ? 0.6 : 2.0) * of_rays) << boxes;
+    EXPECT_LT(uneven(Shares{}.size()), (boxes == 12 ? 0.8 : 2.0) * of_all) << boxes;
+  }
+}
+
+/// Of the work of shadow rays to the scene's light, the busiest PE's part; the mean of all views.
+double busiest_of_light(const Scene& scene, const Image& image) {
+  const auto triangles = decode_triangles(image);
+  RaySample sample(image.lattice(), triangles->triangles, scene.lights);
+  const VoxelGrid grid = image.grid();
+  const GridLoad load = sample.measure(grid, bin_triangles(grid, triangles->triangles));
+  const std::vector<std::uint8_t> owners = owners_of(image);
+  double mean = 0.0;
+  for (std::size_t g = kViews; g < 2 * kViews; ++g) {
+    std::array<double, 4> busy{};
+    double sum = 0.0;
+    for (std::size_t i = 0; i < owners.size(); ++i) {
+      busy.at(owners[i]) += load.work[g][i];
+      sum += load.work[g][i];
+    }
+    mean += *std::ranges::max_element(busy) / sum / kViews;
+  }
+  return mean;
+}
+
+TEST(Measured, ShadowRaysToTheScenesLightAreEvenAmongPes) {
+  Scene scene = must_load("builtin:teapot?tessellation=14");
+  Scene dark = scene;
+  dark.lights.clear();
+  const Image of_dark = must_build(dark, compact());
+  Light lamp;
+  lamp.position = {9.0, 2.0, -4.0};
+  Light sun;
+  sun.kind = Light::Kind::kDirectional;
+  sun.direction = {-0.9, 0.1, 0.4};
+  for (const Light& light : {lamp, sun}) {
+    scene.lights = {light};
+    EXPECT_LT(busiest_of_light(scene, must_build(scene, compact())),
+              busiest_of_light(scene, of_dark));
   }
 }
 
@@ -144,6 +188,14 @@ TEST(Measured, OddScenes) {
     const Image image = must_build(must_load(spec), compact());
     EXPECT_TRUE(verify_image(image)) << spec << ": " << verify_image(image).error().message;
   }
+  Scene lit = must_load("builtin:cube");
+  lit.lights.assign(
+      3, Light{});  // on a corner, without a direction, and farther than a ray's numbers reach
+  lit.lights[0].position = glm::dvec3{lit.positions[0]};
+  lit.lights[1].kind = Light::Kind::kDirectional;
+  lit.lights[1].direction = glm::dvec3{0.0};
+  lit.lights[2].position = {1e308, -1e308, 1e308};
+  EXPECT_TRUE(verify_image(must_build(lit, compact())));
   ImageOptions options = compact();
   options.bits = 4;
   EXPECT_TRUE(verify_image(must_build(random_scene(40, 3), options)));
