@@ -24,7 +24,9 @@ constexpr std::size_t kTrianglesPerRay = 8;
 constexpr double kSpread = 0.4;
 /// Of the lights, those of the scene, if it has so many.
 constexpr std::size_t kOwnLights = kLights - 1;
-constexpr double kTraversalUnits = 3.0;  ///< of the board: a block a clock each
+/// Of the sample's blocks, those that the board's three units look at in a clock, one each: the
+/// rays of a camera close by meet half as many again as these, which cross corners of the box, too.
+constexpr double kStepsAClock = 2.1;
 /// What a clock of a shadow ray counts against one of a primary ray: their budgets are 5.5
 /// and 3.25.
 constexpr double kShadowWeight = 0.6;
@@ -280,7 +282,7 @@ double estimate_clocks(const GridLoad& load, std::span<const std::uint8_t> owner
     std::ranges::fill(busy, 0.0);
     for (std::size_t i = 0; i < load.work[g].size(); ++i) busy[owners[i]] += load.work[g][i];
     double clocks = 0.0;
-    for (const double part : {load.steps[g] / kTraversalUnits, load.tasks[g] / kExpanders,
+    for (const double part : {load.steps[g] / kStepsAClock, load.tasks[g] / kExpanders,
                               *std::ranges::max_element(busy)}) {
       clocks += power4(part);
     }
