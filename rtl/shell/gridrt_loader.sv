@@ -159,7 +159,8 @@ module gridrt_loader #(
   assign taken = byte_valid_i && state == BYTES && left != '0;
   logic accept;
   assign accept = state == CHECK && objection.code == '0;
-  assign header_begin = clear_i || (accept && chosen == HEADER && restart) ||
+  // A piece that is objected to is nobody's, so this need not wait for what objects to sections.
+  assign header_begin = clear_i || (state == CHECK && chosen == HEADER && restart) ||
                         (end_i && state == BYTES && !good_i && target == HEADER);
   assign header_finish = state == FINISH && target == HEADER &&
                          {20'd0, header_progress} == total;
