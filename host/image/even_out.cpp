@@ -13,14 +13,15 @@ namespace {
 constexpr std::size_t kPes = 4;
 constexpr int kSweeps = 90;
 /// Costs that a move may add, at the first sweep and at the last one. A dealing in which a PE has
-/// a tenth more than its share of everything costs 1e-2, a voxel more 1e-4 or so.
+/// a tenth more than its share of everything costs 0.1, a voxel more 1e-3 or so.
 constexpr double kHot = 1e-3;
 constexpr double kCold = 1e-6;
 /// What a memory that is too full costs, by the part of it that lacks; against shares that are
 /// uneven.
 constexpr double kOverfull = 4.0;
 constexpr double kFull = 0.998;  ///< some room, so that the end of the way fits
-/// A group of rays against a region, of which there are more, each of few voxels and so less even.
+/// A group of rays against a facing or a region; regions are many, each of few voxels and so
+/// uneven.
 constexpr float kRayWeight = 60.0F;
 constexpr double kFar = 0.05;  ///< part of the moves that go to any PE
 

@@ -39,8 +39,8 @@ glm::dvec3 direction_of(std::size_t view) {
   return glm::normalize(glm::dvec3{cell % 3 - 1, cell / 3 % 3 - 1, cell / 9 - 1});
 }
 
-/// Towards light `number` of a view that is none of the scene's: from aside, and from what faces
-/// both.
+/// Towards light `number` of a view that is none of the scene's: from one of the view's sides, and
+/// a little from where the viewer is, so that it shines on what he sees.
 glm::dvec3 light_around(std::size_t view, std::size_t number) {
   const glm::dvec3 d = direction_of(view);
   const glm::dvec3 other = view % 2 == 0 ? glm::dvec3{0.36, 0.48, 0.8} : glm::dvec3{-0.8, 0.6, 0.0};
@@ -179,31 +179,39 @@ RaySample::RaySample(const Lattice& lattice, std::span<const LatticeTriangle> tr
   }
 }
 
-glm::dvec3 RaySample::light_direction(const Sample& primary, std::size_t number) {
+Ray RaySample::towards_light(const Sample& primary, std::size_t number) {
+  Ray ray;
   const std::size_t own = std::min(lights_.size(), kOwnLights);
-  if (number >= own) return spread(light_around(primary.group, number), uniform_);
+  if (number >= own) {
+    const glm::dvec3 way = spread(light_around(primary.group, number), uniform_);
+    for (int a = 0; a < 3; ++a) {
+      ray.direction[a] = std::ldexp(way[a], std::max(-1000, -lattice_.scale[a]));
+    }
+    return ray;
+  }
   const Light& light = lights_[number * lights_.size() / own];
+  ray.direction = -light.direction;
+  if (light.kind == Light::Kind::kDirectional) return ray;
   const double along = std::ldexp(static_cast<double>(primary.hit.quotient), -24);
   const glm::dvec3 at =
       glm::dvec3{primary.segment.p0} + along * glm::dvec3{primary.segment.p1 - primary.segment.p0};
-  const int most = std::max({lattice_.scale[0], lattice_.scale[1], lattice_.scale[2]});
-  glm::dvec3 out{0.0};
   for (int a = 0; a < 3; ++a) {
-    const double from =
-        static_cast<double>(lattice_.lo[a]) + std::ldexp(at[a] - 2.0, -lattice_.scale[a]);
-    const double way =
-        light.kind == Light::Kind::kPoint ? light.position[a] - from : -light.direction[a];
-    out[a] = std::ldexp(way, lattice_.scale[a] - most);
+    ray.direction[a] = light.position[a] - static_cast<double>(lattice_.lo[a]) -
+                       std::ldexp(at[a] - 2.0, -lattice_.scale[a]);
   }
-  return out;
+  ray.tmax = 1.0;
+  return ray;
 }
 
 void RaySample::add_shadow_ray(const Sample& primary, std::size_t number) {
   const LatticeTriangle& left = triangles_[primary.hit.id];
-  const glm::dvec3 light = light_direction(primary, number);
-  Ray ray;
+  Ray ray = towards_light(primary, number);
+  // On the light, or farther from it than numbers reach.
+  if (!validate(ray)) return;
+  const int most = std::max({lattice_.scale[0], lattice_.scale[1], lattice_.scale[2]});
+  glm::dvec3 light{0.0};  // along the lattice's axes, whatever its length
   for (int a = 0; a < 3; ++a) {
-    ray.direction[a] = std::ldexp(light[a], std::max(-1000, -lattice_.scale[a]));
+    light[a] = std::ldexp(ray.direction[a], lattice_.scale[a] - most);
   }
   const glm::dvec3 e1{left.v[1] - left.v[0]};
   const glm::dvec3 e2{left.v[2] - left.v[0]};

@@ -17,8 +17,8 @@
 namespace gridrt {
 
 /// Groups of sample rays, each of which is to keep all PEs busy: primary rays from 26 directions,
-/// then shadow rays from what each of these hits, light by light: some of the scene's, then others
-/// around it.
+/// then shadow rays from what each of these hits, light by light: some of the scene's, then
+/// others from the sides of the view.
 inline constexpr std::size_t kViews = 26;
 inline constexpr std::size_t kLights = 4;
 inline constexpr std::size_t kRayGroups = kViews * (1 + kLights);
@@ -52,8 +52,9 @@ class RaySample {
     HitKey hit;  ///< the closest one
   };
   void find_hits(const VoxelGrid& grid, const VoxelLists& lists);
-  /// From a hit towards light `number` (below kLights), along the lattice's axes; any length.
-  glm::dvec3 light_direction(const Sample& primary, std::size_t number);
+  /// From what `primary` hits towards light `number` (below kLights), in scene units but without an
+  /// origin; it ends at a point light. Not a valid ray where the light is at the hit.
+  Ray towards_light(const Sample& primary, std::size_t number);
   void add_shadow_ray(const Sample& primary, std::size_t number);
 
   Lattice lattice_;
@@ -65,10 +66,10 @@ class RaySample {
   bool hits_known_ = false;
 };
 
-/// Clocks of a ray, estimated: the parts of a device work at the same time, so that the busiest one
-/// decides, and a little more the closer the others come. Group by group, of which dear ones count
-/// more; views as much as lights.
-/// `owners` are in [0, pes).
+/// A measure of the clocks of a ray, to compare grids and dealings by: the parts of a device work
+/// at the same time, so that the busiest one decides, and a little more the closer the others come.
+/// Group by group, of which dear ones count more; views as much as lights. `owners` are in [0,
+/// pes).
 double estimate_clocks(const GridLoad& load, std::span<const std::uint8_t> owners, int pes);
 
 }  // namespace gridrt

@@ -188,7 +188,7 @@ TEST(Measured, OddScenes) {
     const Image image = must_build(must_load(spec), compact());
     EXPECT_TRUE(verify_image(image)) << spec << ": " << verify_image(image).error().message;
   }
-  Scene lit = must_load("builtin:cube");
+  Scene lit = must_load("builtin:cube?size=1e6,1e6,1e6");
   lit.lights.assign(
       3, Light{});  // on a corner, without a direction, and farther than a ray's numbers reach
   lit.lights[0].position = glm::dvec3{lit.positions[0]};
