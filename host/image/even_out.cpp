@@ -11,7 +11,7 @@ namespace gridrt {
 namespace {
 
 constexpr std::size_t kPes = 4;
-constexpr int kSweeps = 90;
+constexpr int kSweeps = 120;
 /// Costs that a move may add, at the first sweep and at the last one. A dealing in which a PE has
 /// a tenth more than its share of everything costs 0.1, a voxel more 1e-3 or so.
 constexpr double kHot = 1e-3;

@@ -24,8 +24,8 @@ constexpr std::size_t kTrianglesPerRay = 8;
 constexpr double kSpread = 0.4;
 /// Of the lights, those of the scene, if it has so many.
 constexpr std::size_t kOwnLights = kLights - 1;
-/// Of the sample's blocks, those that the board's three units look at in a clock, one each: the
-/// rays of a camera close by meet half as many again as these, which cross corners of the box, too.
+/// Three units make three steps a clock, but rays of a camera close by make 1.4 times as many
+/// steps as the sample's, some of which only cross a corner of the box.
 constexpr double kStepsAClock = 2.1;
 /// What a clock of a shadow ray counts against one of a primary ray: their budgets are 5.5
 /// and 3.25.

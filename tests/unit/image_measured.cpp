@@ -125,7 +125,7 @@ TEST(Measured, EvensOutWithinMemories) {
     even_out(local, cut, measured, owners);
     EXPECT_TRUE(dealing_fits(local, cut, measured, owners)) << boxes;
     EXPECT_LT(uneven(kRayGroups), (boxes == 12 ? 0.6 : 2.0) * of_rays) << boxes;
-    EXPECT_LT(uneven(Shares{}.size()), (boxes == 12 ? 0.8 : 2.0) * of_all) << boxes;
+    EXPECT_LT(uneven(Shares{}.size()), (boxes == 12 ? 0.7 : 2.0) * of_all) << boxes;
   }
 }
 
@@ -189,8 +189,8 @@ TEST(Measured, OddScenes) {
     EXPECT_TRUE(verify_image(image)) << spec << ": " << verify_image(image).error().message;
   }
   Scene lit = must_load("builtin:cube?size=1e6,1e6,1e6");
-  lit.lights.assign(
-      3, Light{});  // on a corner, without a direction, and farther than a ray's numbers reach
+  // On a corner, without a direction, and as far as numbers reach.
+  lit.lights.assign(3, Light{});
   lit.lights[0].position = glm::dvec3{lit.positions[0]};
   lit.lights[1].kind = Light::Kind::kDirectional;
   lit.lights[1].direction = glm::dvec3{0.0};
