@@ -20,6 +20,9 @@ constexpr double kCold = 1e-6;
 /// uneven.
 constexpr double kOverfull = 4.0;
 constexpr double kFull = 0.998;  ///< some room, so that the end of the way fits
+/// If it does not fit by then: what that costs in further sweeps.
+constexpr int kMends = 40;
+constexpr double kMendOverfull = 64.0;
 /// A group of rays against a facing or a region; regions are many, each of few voxels and so
 /// uneven.
 constexpr float kRayWeight = 60.0F;
@@ -51,15 +54,9 @@ class Annealer {
   void run() {
     const double cooling = std::pow(kCold / kHot, 1.0 / (kSweeps - 1));
     double heat = kHot;
-    for (int sweep = 0; sweep < kSweeps; ++sweep, heat *= cooling) {
-      for (std::size_t n = 0; n < voxels_.size(); ++n) {
-        const auto pick =
-            static_cast<std::size_t>(uniform_() * static_cast<double>(voxels_.size()));
-        const std::size_t voxel = voxels_[pick];
-        const std::optional<std::size_t> to = target(voxel);
-        if (to) try_move(voxel, *to, -heat * std::log(1.0 - uniform_()));
-      }
-    }
+    for (int i = 0; i < kSweeps; ++i, heat *= cooling) sweep(heat);
+    overfull_cost_ = kMendOverfull;
+    for (int i = 0; i < kMends && !fits(); ++i) sweep(kCold);
   }
 
  private:
@@ -67,6 +64,22 @@ class Annealer {
     const auto& first = measured_.lists.first;
     return std::span(measured_.lists.references)
         .subspan(first[voxel], first[voxel + 1] - first[voxel]);
+  }
+
+  void sweep(double heat) {
+    for (std::size_t n = 0; n < voxels_.size(); ++n) {
+      const auto pick = static_cast<std::size_t>(uniform_() * static_cast<double>(voxels_.size()));
+      const std::size_t voxel = voxels_[pick];
+      const std::optional<std::size_t> to = target(voxel);
+      if (to) try_move(voxel, *to, -heat * std::log(1.0 - uniform_()));
+    }
+  }
+
+  [[nodiscard]] bool fits() const {
+    return std::ranges::all_of(load_, [this](const Load& l) {
+      return l.references <= cut_.memory.references && l.triangles <= cut_.memory.triangles &&
+             l.vertices <= cut_.memory.vertices;
+    });
   }
 
   /// A PE to which the voxel may go.
@@ -98,7 +111,7 @@ class Annealer {
       return std::max(0.0, held / (kFull * most) - 1.0);
     };
     const Load& l = load_[pe];
-    return kOverfull *
+    return overfull_cost_ *
            (over(l.references, cut_.memory.references) + over(l.triangles, cut_.memory.triangles) +
             over(l.vertices, cut_.memory.vertices));
   }
@@ -172,6 +185,7 @@ class Annealer {
   std::vector<std::array<std::uint16_t, kPes>> triangle_voxels_;   ///< that refer to it, by PE
   std::vector<std::array<std::uint16_t, kPes>> vertex_triangles_;  ///< with this corner, by PE
   std::array<Load, kPes> load_{};
+  double overfull_cost_ = kOverfull;
   std::array<Shares, kPes> shares_{};
   Uniform uniform_;
 };

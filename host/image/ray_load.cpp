@@ -22,11 +22,18 @@ constexpr std::size_t kTrianglesPerRay = 8;
 /// Rays of a view, and lights, spread around their direction as a camera close by and lights here
 /// and there would have it: by so much of it per axis.
 constexpr double kSpread = 0.4;
+/// Of a view's rays, one in so many comes from afar, the others from a camera close by. It is so
+/// many radii of the box's sphere from the middle, where its picture reaches that many to each
+/// side.
+constexpr std::size_t kFromAfar = 4;
+constexpr double kDistance = 2.0;
+constexpr double kPicture = 1.2;
+constexpr int kAttempts = 50;  ///< to find a ray that meets the box
 /// Of the lights, those of the scene, if it has so many.
 constexpr std::size_t kOwnLights = kLights - 1;
-/// Three units make three steps a clock, but rays of a camera close by make 1.4 times as many
-/// steps as the sample's, some of which only cross a corner of the box.
-constexpr double kStepsAClock = 2.1;
+/// Three units make three steps a clock, but in the dearest view rays make 1.6 times as many steps
+/// as the sample's of that direction, some of which only cross a corner of the box.
+constexpr double kStepsAClock = 1.8;
 /// What a clock of a shadow ray counts against one of a primary ray: their budgets are 5.5
 /// and 3.25.
 constexpr double kShadowWeight = 0.6;
@@ -59,18 +66,34 @@ glm::dvec3 spread(const glm::dvec3& direction, Uniform& uniform) {
   return out;
 }
 
+/// The lattice's box in scene units, by its longest side so that no product overflows.
+struct SceneBox {
+  explicit SceneBox(const Lattice& lattice) {
+    for (int a = 0; a < 3; ++a) {
+      lo[a] = static_cast<double>(lattice.lo[a]) - std::ldexp(2.0, -lattice.scale[a]);
+      extent[a] = std::ldexp(static_cast<double>(lattice.box()[a]), -lattice.scale[a]);
+    }
+    length = std::max({extent.x, extent.y, extent.z});
+    extent /= length;
+  }
+  /// A ray from `from`, in longest sides from the corner `lo`, along `direction`.
+  [[nodiscard]] Ray ray(const glm::dvec3& from, const glm::dvec3& direction) const {
+    Ray ray;
+    for (int a = 0; a < 3; ++a) {
+      ray.direction[a] = direction[a] * length;
+      ray.origin[a] = lo[a] + from[a] * length;
+    }
+    return ray;
+  }
+  glm::dvec3 lo{0.0};
+  glm::dvec3 extent{0.0};  ///< in longest sides
+  double length = 1.0;
+};
+
 /// Enters the box at a point of the three faces that `direction` meets from outside, evenly over
 /// what a viewer far away sees of them.
-Ray ray_through_box(const Lattice& lattice, const glm::dvec3& direction, Uniform& uniform) {
-  glm::dvec3 lo{0.0};
-  glm::dvec3 extent{0.0};
-  for (int a = 0; a < 3; ++a) {
-    lo[a] = static_cast<double>(lattice.lo[a]) - std::ldexp(2.0, -lattice.scale[a]);
-    extent[a] = std::ldexp(static_cast<double>(lattice.box()[a]), -lattice.scale[a]);
-  }
-  const double length = std::max({extent.x, extent.y, extent.z});
-  // In units of the longest side, so that no product overflows.
-  const glm::dvec3 e = extent / length;
+Ray ray_from_afar(const SceneBox& box, const glm::dvec3& direction, Uniform& uniform) {
+  const glm::dvec3& e = box.extent;
   glm::dvec3 seen{0.0};
   for (int a = 0; a < 3; ++a) {
     seen[a] = std::abs(direction[a]) * e[(a + 1) % 3] * e[(a + 2) % 3];
@@ -78,13 +101,27 @@ Ray ray_through_box(const Lattice& lattice, const glm::dvec3& direction, Uniform
   double pick = uniform() * (seen.x + seen.y + seen.z);
   int face = 0;
   while (face < 2 && pick >= seen[face]) pick -= seen[face++];
-  Ray ray;
+  glm::dvec3 from{0.0};
   for (int a = 0; a < 3; ++a) {
     const double part = a == face ? (direction[a] > 0 ? 0.0 : 1.0) : uniform();
-    ray.direction[a] = direction[a] * length;
-    ray.origin[a] = lo[a] + part * extent[a] - ray.direction[a];
+    from[a] = part * e[a] - direction[a];
   }
-  return ray;
+  return box.ray(from, direction);
+}
+
+/// Through a point of the picture of a camera that looks along `direction` at the box's middle from
+/// so near that the box fills its picture: what is near it looks large. May miss the box.
+Ray ray_of_camera(const SceneBox& box, const glm::dvec3& direction, Uniform& uniform) {
+  const double radius = 0.5 * glm::length(box.extent);
+  const glm::dvec3 d = glm::normalize(direction);
+  const glm::dvec3 other = std::abs(d.x) < 0.6 ? glm::dvec3{1, 0, 0} : glm::dvec3{0, 1, 0};
+  const glm::dvec3 x = glm::normalize(glm::cross(d, other));
+  const glm::dvec3 y = glm::cross(d, x);
+  const double wide = 2.0 * kPicture * radius;
+  const double right = wide * (uniform() - 0.5);
+  const double up = wide * (uniform() - 0.5);
+  const glm::dvec3 eye = 0.5 * box.extent - kDistance * radius * d;
+  return box.ray(eye, kDistance * radius * d + right * x + up * y);
 }
 
 /// A grid with what a traversal unit reads of it.
@@ -168,15 +205,26 @@ RaySample::RaySample(const Lattice& lattice, std::span<const LatticeTriangle> tr
   const std::size_t rays = std::clamp(triangles.size() / kTrianglesPerRay, kFewestRays, kMostRays);
   for (std::size_t view = 0; view < kViews; ++view) {
     for (std::size_t i = 0; i < rays; ++i) {
-      const Ray ray = ray_through_box(lattice, spread(direction_of(view), uniform_), uniform_);
-      // A box of nearly all of float32's range has rays that are no numbers.
-      if (!validate(ray)) continue;
-      const Segment segment = make_segment(lattice, ray);
-      if (segment.is_miss()) continue;
-      samples_.push_back({segment, view, {}});
+      const std::optional<Segment> segment = find_segment(view, i % kFromAfar == 0);
+      if (!segment) continue;
+      samples_.push_back({*segment, view, {}});
       rays_[view] += 1.0;
     }
   }
+}
+
+std::optional<Segment> RaySample::find_segment(std::size_t view, bool from_afar) {
+  const SceneBox box(lattice_);
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    const glm::dvec3 direction = spread(direction_of(view), uniform_);
+    const Ray ray = from_afar ? ray_from_afar(box, direction, uniform_)
+                              : ray_of_camera(box, direction, uniform_);
+    // A box of nearly all of float32's range has rays that are no numbers.
+    if (!validate(ray)) continue;
+    const Segment segment = make_segment(lattice_, ray);
+    if (!segment.is_miss()) return segment;
+  }
+  return {};
 }
 
 Ray RaySample::towards_light(const Sample& primary, std::size_t number) {

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -32,8 +33,8 @@ struct GridLoad {
   std::array<std::vector<float>, kRayGroups> work;
 };
 
-/// Primary rays through the whole lattice box, evenly spread over what is seen of it from each
-/// direction, as a camera that has the box in view would send them, and shadow rays towards the
+/// Primary rays through the whole lattice box from each direction, as cameras that have the box in
+/// view would send them, most of them close by and some far away, and shadow rays towards the
 /// scene's lights and towards some that shine from other directions; the same ones for the same
 /// scene.
 class RaySample {
@@ -51,6 +52,8 @@ class RaySample {
     std::size_t group = 0;
     HitKey hit;  ///< the closest one
   };
+  /// A ray of a view that meets the box, unless none can be found.
+  std::optional<Segment> find_segment(std::size_t view, bool from_afar);
   void find_hits(const VoxelGrid& grid, const VoxelLists& lists);
   /// From what `primary` hits towards light `number` (below kLights), in scene units but without an
   /// origin; it ends at a point light. Not a valid ray where the light is at the hit.

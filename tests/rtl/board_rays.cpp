@@ -197,6 +197,9 @@ Camera fill_view(const Scene& scene, const glm::dvec3& toward, int width, int he
 }
 
 Result<std::vector<RayWave>> make_waves(const Scene& scene, const WaveOptions& options) {
+  if (scene.triangles.empty()) {
+    return fail(ErrorKind::kInput, "a scene without triangles has no views");
+  }
   const Scene shown = mirrored(scene);
   ImageOptions wide;
   wide.with_scene = false;

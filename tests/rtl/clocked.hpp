@@ -51,6 +51,8 @@ class Clocked {
     settle();
   }
 
+  [[nodiscard]] const VerilatedContext& context() const { return *context_; }
+
   /// Clocks since the beginning.
   [[nodiscard]] long clocks() const { return clocks_; }
 

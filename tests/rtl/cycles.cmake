@@ -1,5 +1,6 @@
 # Programs that measure clocks at the engine's ports, one for each configuration; tools/board-cycles
-# builds those that it needs. The default one shares the model of the engine's bench.
+# builds those that it needs. gridrt_pace looks at the pace of each PE. The default one shares its
+# model with the engine's bench.
 find_package(CLI11 REQUIRED)
 find_package(nlohmann_json REQUIRED)
 add_library(gridrt_board_rays STATIC EXCLUDE_FROM_ALL board_rays.cpp)
@@ -10,7 +11,7 @@ function(gridrt_engine_cycles name)
   set(parameters B=17 PES=4 ${ARGN})
   string(MAKE_C_IDENTIFIER "rtl_gridrt_engine_${parameters}" model)
   if(NOT TARGET ${model})
-    gridrt_verilated(${model} TOP gridrt_engine PARAMETERS ${parameters})
+    gridrt_verilated(${model} TOP gridrt_engine PARAMETERS ${parameters} FILES gridrt_pace.sv)
     set_target_properties(${model} PROPERTIES EXCLUDE_FROM_ALL TRUE)
   endif()
   add_executable(engine-cycles-${name} EXCLUDE_FROM_ALL engine_cycles.cpp engine_harness.cpp)

@@ -62,6 +62,10 @@ void print(const Options& options, const Image& image, const RayWave& wave,
            const EngineAnswers& got, long wrong) {
   const EngineCounts& c = got.counts;
   const protocol::ImageHeader& h = image.header;
+  auto pes = nlohmann::json::array();
+  for (const PeWork& pe : got.pes) {
+    pes.push_back({{"tests", pe.tests}, {"work", pe.clocks}, {"refused", pe.refused}});
+  }
   const nlohmann::ordered_json line{
       {"scene", options.scene},
       {"triangles", h.local_ids},
@@ -83,6 +87,7 @@ void print(const Options& options, const Image& image, const RayWave& wave,
       {"divider_busy", c.divider_busy},
       {"hit_wait", c.hit_wait},
       {"in_flight", c.in_flight},
+      {"pes", pes},
       {"wrong", wrong}};
   fmt::print("{}\n", line.dump());
   std::fflush(stdout);

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <random>
+#include <string>
 
 #include <Vgridrt_engine.h>
+#include <verilated_syms.h>
 
 #include "tests/rtl/clocked.hpp"
 #include "tests/rtl/march_ports.hpp"
@@ -65,6 +67,21 @@ std::size_t stride_of(const protocol::ImageHeader& header, protocol::SectionKind
 class EngineHarness::Rtl : public Clocked<Vgridrt_engine> {
  public:
   using Clocked::Clocked;
+
+  /// By PE, since the reset.
+  std::vector<PeWork> pes() {
+    std::vector<PeWork> out;
+    while (true) {
+      const std::string name =
+          "TOP.gridrt_engine.u_pes.gen_pe[" + std::to_string(out.size()) + "].u_pe.u_pace";
+      const VerilatedScope* scope = context().scopeFind(name.c_str());
+      if (scope == nullptr) return out;
+      const auto count = [&](const char* what) {
+        return static_cast<long>(*static_cast<const std::uint64_t*>(scope->varFind(what)->datap()));
+      };
+      out.push_back({count("tests"), count("work"), count("refused")});
+    }
+  }
 };
 
 protocol::RayCompact engine_ray(const Segment& segment, std::uint32_t local_ignore, bool any_hit) {
@@ -137,6 +154,7 @@ EngineAnswers EngineHarness::trace(std::span<const protocol::RayCompact> rays,
   bool offered = false;
   long begin = -1;
   long progress = rtl.clocks();
+  const std::vector<PeWork> before = rtl.pes();
   while (out.hits.size() < rays.size() && rtl.clocks() - progress < run.patience) {
     if (!offered && next < rays.size() && chance(run.offer)) {
       const protocol::RayCompact& ray = rays[next];
@@ -171,6 +189,12 @@ EngineAnswers EngineHarness::trace(std::span<const protocol::RayCompact> rays,
   for (int i = 0; i < 8; ++i) {
     rtl.tick();
     add(out.counts, rtl->counts_o);
+  }
+  out.pes = rtl.pes();
+  for (std::size_t p = 0; p < before.size(); ++p) {
+    out.pes[p].tests -= before[p].tests;
+    out.pes[p].clocks -= before[p].clocks;
+    out.pes[p].refused -= before[p].refused;
   }
   return out;
 }

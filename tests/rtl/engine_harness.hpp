@@ -32,6 +32,13 @@ struct EngineCounts {
   long hit_wait = 0;
 };
 
+/// What gridrt_pace has seen of a PE.
+struct PeWork {
+  long tests = 0;
+  long clocks = 0;   ///< in which a reference that was then tested had been waiting
+  long refused = 0;  ///< other clocks in which a task was refused
+};
+
 /// How a run drives the two ports.
 struct EngineRun {
   int offer = 100;  ///< percent of clocks in which a ray is offered; an offer stays until taken
@@ -45,6 +52,7 @@ struct EngineAnswers {
   std::vector<protocol::HitCompact> hits;  ///< in order; fewer than rays if the engine hung
   long clocks = 0;                         ///< from the first ray taken to the last hit
   EngineCounts counts;
+  std::vector<PeWork> pes;  ///< by PE; none if the model is without gridrt_pace
 };
 
 /// A ray record; `local_ignore` is a local id, or all ones.

@@ -4,6 +4,7 @@
 #include <set>
 #include <tuple>
 
+#include "host/grid/quarters.hpp"
 #include "host/image/blocks.hpp"
 #include "host/image/image_file.hpp"
 #include "host/image/quarter_code.hpp"
@@ -95,8 +96,15 @@ TEST(BuildImage, CellsHoldWhatTheGridGives) {
     const std::vector<DecodedCell> cells = decode_cells(image);
     for (std::size_t c = 0; c < cells.size(); ++c) {
       ASSERT_EQ(cells[c].references.size(), lists.first[c + 1] - lists.first[c]);
-      for (std::size_t i = 0; i < cells[c].references.size(); ++i) {
-        const VoxelReference& r = lists.references[lists.first[c] + i];
+      // Those that take most of the voxel first.
+      std::vector<VoxelReference> list(
+          lists.references.begin() + static_cast<std::ptrdiff_t>(lists.first[c]),
+          lists.references.begin() + static_cast<std::ptrdiff_t>(lists.first[c + 1]));
+      std::ranges::stable_sort(list, [](const VoxelReference& a, const VoxelReference& b) {
+        return std::popcount(cells_of(a.quarters)) > std::popcount(cells_of(b.quarters));
+      });
+      for (std::size_t i = 0; i < list.size(); ++i) {
+        const VoxelReference& r = list[i];
         EXPECT_EQ(cells[c].references[i], std::pair(r.triangle, quarter_code(r.quarters)));
       }
       if (!cells[c].references.empty()) {
@@ -107,8 +115,10 @@ TEST(BuildImage, CellsHoldWhatTheGridGives) {
 }
 
 TEST(BuildImage, BlocksCountTheirCellsAndSkip) {
+  Scene scene = random_scene(40, 3, 0.1F);
+  add_triangle(scene, {9.0F, 9.0F, 9.0F}, {9.1F, 9.0F, 9.0F}, {9.0F, 9.1F, 9.0F});  // far off
   for (const ImageOptions& options : many_options()) {
-    const Image image = must_build(random_scene(40, 3, 0.1F), options);
+    const Image image = must_build(scene, options);
     const auto decoded = decode_triangles(image);
     ASSERT_TRUE(decoded) << decoded.error().message;
     const VoxelGrid grid = image.grid();
