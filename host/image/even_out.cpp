@@ -84,26 +84,25 @@ class Annealer {
 
   /// A PE to which the voxel may go.
   std::optional<std::size_t> target(std::size_t voxel) {
-    const std::size_t from = owners_[voxel];
-    std::size_t to = from;
-    if (uniform_() < kFar) {
-      to = static_cast<std::size_t>(uniform_() * cut_.pes);
-    } else {
-      const glm::ivec3 count = measured_.grid.count;
-      const std::array<std::size_t, 3> stride{
-          1, static_cast<std::size_t>(count.x),
-          static_cast<std::size_t>(count.x) * static_cast<std::size_t>(count.y)};
-      const auto side = static_cast<std::size_t>(uniform_() * 6.0);
-      const std::size_t axis = side / 2;
-      const auto size = static_cast<std::size_t>(count[static_cast<int>(axis)]);
-      const std::size_t at = voxel / stride[axis] % size;
-      if (side % 2 == 0 ? at == 0 : at + 1 == size) return {};
-      const std::size_t next = side % 2 == 0 ? voxel - stride[axis] : voxel + stride[axis];
-      if (list(next).empty()) return {};
-      to = owners_[next];
-    }
-    if (to == from) return {};
-    return to;
+    const std::optional<std::size_t> to =
+        uniform_() < kFar ? static_cast<std::size_t>(uniform_() * cut_.pes) : neighbour(voxel);
+    return to == owners_[voxel] ? std::nullopt : to;
+  }
+
+  /// The PE of a voxel beside it, on a side picked at random.
+  std::optional<std::size_t> neighbour(std::size_t voxel) {
+    const glm::ivec3 count = measured_.grid.count;
+    const std::array<std::size_t, 3> stride{
+        1, static_cast<std::size_t>(count.x),
+        static_cast<std::size_t>(count.x) * static_cast<std::size_t>(count.y)};
+    const auto side = static_cast<std::size_t>(uniform_() * 6.0);
+    const std::size_t axis = side / 2;
+    const auto size = static_cast<std::size_t>(count[static_cast<int>(axis)]);
+    const std::size_t at = voxel / stride[axis] % size;
+    if (side % 2 == 0 ? at == 0 : at + 1 == size) return {};
+    const std::size_t next = side % 2 == 0 ? voxel - stride[axis] : voxel + stride[axis];
+    if (list(next).empty()) return {};
+    return owners_[next];
   }
 
   [[nodiscard]] double overfull(std::size_t pe) const {

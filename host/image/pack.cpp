@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <functional>
 #include <limits>
 #include <utility>
 
@@ -170,9 +169,10 @@ class Collector {
   /// tested a PE reads the others.
   static std::vector<VoxelReference> likely_first(std::span<const VoxelReference> list) {
     std::vector<VoxelReference> out(list.begin(), list.end());
-    std::ranges::stable_sort(out, std::greater{}, [](const VoxelReference& r) {
-      return std::popcount(cells_of(r.quarters));
-    });
+    const auto rank = [](const VoxelReference& r) {
+      return std::pair(-std::popcount(cells_of(r.quarters)), r.triangle);
+    };
+    std::ranges::sort(out, {}, rank);
     return out;
   }
   [[nodiscard]] std::span<const VoxelReference> list(std::size_t cell) const {

@@ -100,8 +100,8 @@ TEST(BuildImage, CellsHoldWhatTheGridGives) {
       std::vector<VoxelReference> list(
           lists.references.begin() + static_cast<std::ptrdiff_t>(lists.first[c]),
           lists.references.begin() + static_cast<std::ptrdiff_t>(lists.first[c + 1]));
-      std::ranges::stable_sort(list, [](const VoxelReference& a, const VoxelReference& b) {
-        return std::popcount(cells_of(a.quarters)) > std::popcount(cells_of(b.quarters));
+      std::ranges::sort(list, {}, [](const VoxelReference& r) {
+        return std::pair(-std::popcount(cells_of(r.quarters)), r.triangle);
       });
       for (std::size_t i = 0; i < list.size(); ++i) {
         const VoxelReference& r = list[i];
