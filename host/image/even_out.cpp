@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "host/image/uniform.hpp"
@@ -20,9 +21,11 @@ constexpr double kCold = 1e-6;
 /// uneven.
 constexpr double kOverfull = 4.0;
 constexpr double kFull = 0.998;  ///< some room, so that the end of the way fits
-/// If it does not fit by then: what that costs in further sweeps.
-constexpr int kMends = 40;
+/// If it does not fit by then: what that costs in further sweeps, as long as they help within a
+/// few.
 constexpr double kMendOverfull = 64.0;
+constexpr int kMends = 40;
+constexpr int kFewMends = 6;
 /// A group of rays against a facing or a region; regions are many, each of few voxels and so
 /// uneven.
 constexpr float kRayWeight = 60.0F;
@@ -55,8 +58,7 @@ class Annealer {
     const double cooling = std::pow(kCold / kHot, 1.0 / (kSweeps - 1));
     double heat = kHot;
     for (int i = 0; i < kSweeps; ++i, heat *= cooling) sweep(heat);
-    overfull_cost_ = kMendOverfull;
-    for (int i = 0; i < kMends && !fits(); ++i) sweep(kCold);
+    mend();
   }
 
  private:
@@ -72,6 +74,18 @@ class Annealer {
       const std::size_t voxel = voxels_[pick];
       const std::optional<std::size_t> to = target(voxel);
       if (to) try_move(voxel, *to, -heat * std::log(1.0 - uniform_()));
+    }
+  }
+
+  void mend() {
+    overfull_cost_ = kMendOverfull;
+    double least = std::numeric_limits<double>::infinity();
+    for (int i = 0, since = 0; i < kMends && since < kFewMends && !fits(); ++i, ++since) {
+      sweep(kCold);
+      double over = 0.0;
+      for (std::size_t pe = 0; pe < kPes; ++pe) over += overfull(pe);
+      if (over < least) since = 0;
+      least = std::min(least, over);
     }
   }
 

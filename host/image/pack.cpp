@@ -148,8 +148,9 @@ class Collector {
       triangles.add(record);
     }
     RecordWriter<protocol::ReferenceCodec> references(image.header, pe.references);
+    const bool for_board = cut_.layout == protocol::Layout::kCompact;
     for (const std::size_t cell : pe.cells) {
-      for (const VoxelReference& r : likely_first(list(cell))) {
+      for (const VoxelReference& r : in_order(list(cell), for_board)) {
         references.add(
             protocol::ReferenceRecord{triangle_index_[r.triangle], quarter_code(r.quarters)});
       }
@@ -165,16 +166,17 @@ class Collector {
   }
 
  private:
-  /// Those that take most of the voxel first: rays pass them by the least, and while they are
-  /// tested a PE reads the others.
-  static std::vector<VoxelReference> likely_first(std::span<const VoxelReference> list) {
-    std::vector<VoxelReference> out(list.begin(), list.end());
-    const auto rank = [](const VoxelReference& r) {
+  /// For a board those that take most of the voxel first: rays pass them by the least, and while
+  /// they are tested a PE reads the others.
+  std::span<const VoxelReference> in_order(std::span<const VoxelReference> list, bool for_board) {
+    if (!for_board) return list;
+    sorted_.assign(list.begin(), list.end());
+    std::ranges::sort(sorted_, {}, [](const VoxelReference& r) {
       return std::pair(-std::popcount(cells_of(r.quarters)), r.triangle);
-    };
-    std::ranges::sort(out, {}, rank);
-    return out;
+    });
+    return sorted_;
   }
+
   [[nodiscard]] std::span<const VoxelReference> list(std::size_t cell) const {
     return std::span(cut_.lists.references)
         .subspan(cut_.lists.first[cell], cut_.lists.first[cell + 1] - cut_.lists.first[cell]);
@@ -184,6 +186,7 @@ class Collector {
   const Cut& cut_;
   std::vector<std::uint8_t> used_;
   std::vector<std::uint32_t> triangle_index_;  // in the PE at hand, by local id
+  std::vector<VoxelReference> sorted_;         // a list of the board
   std::vector<std::uint32_t> vertex_index_;    // in the PE at hand, by vertex
 };
 

@@ -19,16 +19,17 @@ namespace {
 constexpr std::size_t kFewestRays = 32;  // a view
 constexpr std::size_t kMostRays = 400;
 constexpr std::size_t kTrianglesPerRay = 8;
-/// Rays of a view, and lights, spread around their direction as a camera close by and lights here
-/// and there would have it: by so much of it per axis.
+/// Cameras stand, rays from afar and lights come from around the view's direction: by so much of it
+/// per axis.
 constexpr double kSpread = 0.4;
-/// Of a view's rays, one in so many comes from afar, the others from a camera close by. It is so
-/// many radii of the box's sphere from the middle, where its picture reaches that many to each
-/// side.
+/// Of a view's rays, one in so many comes from afar, the others from a camera close by.
 constexpr std::size_t kFromAfar = 4;
+/// From the box's middle to a camera, and half the width of its picture there, in radii of the
+/// box's sphere.
 constexpr double kDistance = 2.0;
 constexpr double kPicture = 1.2;
-constexpr int kAttempts = 50;  ///< to find a ray that meets the box
+/// To find a ray of a camera that meets the box, and then one from afar: needles are small.
+constexpr int kAttempts = 50;
 /// Of the lights, those of the scene, if it has so many.
 constexpr std::size_t kOwnLights = kLights - 1;
 /// Three units make three steps a clock, but in the dearest view rays make 1.6 times as many steps
@@ -215,11 +216,10 @@ RaySample::RaySample(const Lattice& lattice, std::span<const LatticeTriangle> tr
 
 std::optional<Segment> RaySample::find_segment(std::size_t view, bool from_afar) {
   const SceneBox box(lattice_);
-  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+  for (int attempt = 0; attempt < 2 * kAttempts; ++attempt) {
     const glm::dvec3 direction = spread(direction_of(view), uniform_);
-    const Ray ray = from_afar ? ray_from_afar(box, direction, uniform_)
-                              : ray_of_camera(box, direction, uniform_);
-    // A box of nearly all of float32's range has rays that are no numbers.
+    const Ray ray = from_afar || attempt >= kAttempts ? ray_from_afar(box, direction, uniform_)
+                                                      : ray_of_camera(box, direction, uniform_);
     if (!validate(ray)) continue;
     const Segment segment = make_segment(lattice_, ray);
     if (!segment.is_miss()) return segment;

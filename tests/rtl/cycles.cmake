@@ -1,6 +1,5 @@
 # Programs that measure clocks at the engine's ports, one for each configuration; tools/board-cycles
-# builds those that it needs. gridrt_pace looks at the pace of each PE. The default one shares its
-# model with the engine's bench.
+# builds those that it needs. The default one shares its model with the engine's bench.
 find_package(CLI11 REQUIRED)
 find_package(nlohmann_json REQUIRED)
 add_library(gridrt_board_rays STATIC EXCLUDE_FROM_ALL board_rays.cpp)
@@ -8,12 +7,7 @@ target_link_libraries(gridrt_board_rays PUBLIC gridrt_render gridrt_driver gridr
                       PRIVATE gridrt_flags fmt::fmt)
 
 function(gridrt_engine_cycles name)
-  set(parameters B=17 PES=4 ${ARGN})
-  string(MAKE_C_IDENTIFIER "rtl_gridrt_engine_${parameters}" model)
-  if(NOT TARGET ${model})
-    gridrt_verilated(${model} TOP gridrt_engine PARAMETERS ${parameters} FILES gridrt_pace.sv)
-    set_target_properties(${model} PROPERTIES EXCLUDE_FROM_ALL TRUE)
-  endif()
+  gridrt_engine_model(model PARAMETERS B=17 PES=4 ${ARGN})
   add_executable(engine-cycles-${name} EXCLUDE_FROM_ALL engine_cycles.cpp engine_harness.cpp)
   target_link_libraries(engine-cycles-${name} PRIVATE ${model} gridrt_board_rays gridrt_image
     gridrt_flags CLI11::CLI11 nlohmann_json::nlohmann_json fmt::fmt)

@@ -39,7 +39,7 @@ def main():
         for kind, limit in LIMITS.items():
             figure = clocks[kind] / max(1, rays[kind])
             print(f"{scene}: {figure:.2f} clocks a {kind} ray, at most {limit}")
-            paces = [count / work[key] for key, count in tests.items() if key[0] == kind]
+            paces = [tests[key] / work[key] for key in tests if key[0] == kind and work[key]]
             pace = min(paces, default=0.0)
             print(f"{scene}: {pace:.3f} tests a clock with work, at least {LEAST_PACE}")
             failed = failed or figure > limit or len(paces) < PES or pace < LEAST_PACE

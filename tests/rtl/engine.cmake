@@ -1,7 +1,11 @@
 # The engine in several configurations, and with random stalls inside.
 function(gridrt_engine_bench name)
-  gridrt_rtl_bench(rtl_engine_${name} TOP gridrt_engine SOURCES engine_bench.cpp engine_harness.cpp
-                   LINK gridrt_awkward ${ARGN})
+  gridrt_engine_model(model ${ARGN})
+  add_executable(rtl_engine_${name} engine_bench.cpp engine_harness.cpp)
+  target_link_libraries(rtl_engine_${name} PRIVATE ${model} gridrt_awkward gridrt_flags GTest::gtest_main)
+  target_include_directories(rtl_engine_${name} PRIVATE ${PROJECT_SOURCE_DIR})
+  gtest_discover_tests(rtl_engine_${name} TEST_PREFIX rtl_engine_${name}. DISCOVERY_TIMEOUT 60
+                       PROPERTIES LABELS rtl)
 endfunction()
 gridrt_engine_bench(b17_4 PARAMETERS B=17 PES=4)
 gridrt_engine_bench(b12_2 PARAMETERS B=12 PES=2 TUS=1 SLOTS=16 QUEUE=4 ROB=16)
@@ -16,8 +20,9 @@ function(gridrt_engine_ablation name)
   target_include_directories(rtl_engine_ablation_${name} PRIVATE ${PROJECT_SOURCE_DIR})
 endfunction()
 add_executable(rtl_engine_ablation_none engine_ablation.cpp engine_harness.cpp)
-target_link_libraries(rtl_engine_ablation_none PRIVATE rtl_gridrt_engine_B_17_PES_4 gridrt_awkward
-                      gridrt_flags fmt::fmt GTest::gtest)
+gridrt_engine_model(model PARAMETERS B=17 PES=4)
+target_link_libraries(rtl_engine_ablation_none PRIVATE ${model} gridrt_awkward gridrt_flags fmt::fmt
+                      GTest::gtest)
 target_include_directories(rtl_engine_ablation_none PRIVATE ${PROJECT_SOURCE_DIR})
 gridrt_engine_ablation(cancel CANCEL=0)
 gridrt_engine_ablation(feedback FEEDBACK=0)

@@ -64,7 +64,7 @@ void print(const Options& options, const Image& image, const RayWave& wave,
   const protocol::ImageHeader& h = image.header;
   auto pes = nlohmann::json::array();
   for (const PeWork& pe : got.pes) {
-    pes.push_back({{"tests", pe.tests}, {"work", pe.clocks}, {"refused", pe.refused}});
+    pes.push_back({{"tests", pe.tests}, {"work", pe.clocks}});
   }
   const nlohmann::ordered_json line{
       {"scene", options.scene},

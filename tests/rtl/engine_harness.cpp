@@ -76,10 +76,13 @@ class EngineHarness::Rtl : public Clocked<Vgridrt_engine> {
           "TOP.gridrt_engine.u_pes.gen_pe[" + std::to_string(out.size()) + "].u_pe.u_pace";
       const VerilatedScope* scope = context().scopeFind(name.c_str());
       if (scope == nullptr) return out;
-      const auto count = [&](const char* what) {
-        return static_cast<long>(*static_cast<const std::uint64_t*>(scope->varFind(what)->datap()));
+      const VerilatedVar* const tests = scope->varFind("tests");
+      const VerilatedVar* const work = scope->varFind("work");
+      if (tests == nullptr || work == nullptr) return {};
+      const auto count = [](const VerilatedVar* of) {
+        return static_cast<long>(*static_cast<const std::uint64_t*>(of->datap()));
       };
-      out.push_back({count("tests"), count("work"), count("refused")});
+      out.push_back({count(tests), count(work)});
     }
   }
 };
@@ -194,7 +197,6 @@ EngineAnswers EngineHarness::trace(std::span<const protocol::RayCompact> rays,
   for (std::size_t p = 0; p < before.size(); ++p) {
     out.pes[p].tests -= before[p].tests;
     out.pes[p].clocks -= before[p].clocks;
-    out.pes[p].refused -= before[p].refused;
   }
   return out;
 }

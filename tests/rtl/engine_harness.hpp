@@ -35,8 +35,7 @@ struct EngineCounts {
 /// What gridrt_pace has seen of a PE.
 struct PeWork {
   long tests = 0;
-  long clocks = 0;   ///< in which a reference that was then tested had been waiting
-  long refused = 0;  ///< other clocks in which a task was refused
+  long clocks = 0;  ///< in which a reference that was then tested had been waiting
 };
 
 /// How a run drives the two ports.

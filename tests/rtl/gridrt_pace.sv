@@ -1,11 +1,11 @@
 // Watches a PE from inside and counts the clocks in which it has work: a reference that is to be
 // tested is later than the fixed way from the port to its test takes. A PE's pace is its tests by
-// these clocks.
+// these clocks. Those in which it only reads references that the mask leaves out are not among them,
+// unless a reference to be tested is behind them.
 //
 // A task comes in the clock in which it is first at the port, so the time in which the PE refuses
 // it counts. With a test at clock t, references have been waiting from the clock in which the task
-// came plus LATENCY, or from the test before, to t. Clocks outside of these in which a task is
-// refused, since references that the mask leaves out are being read, are counted by themselves.
+// came plus LATENCY, or from the test before, to t.
 module gridrt_pace #(
     parameter int unsigned LATENCY = 7  // the fewest clocks from the port to a test
 ) (
@@ -21,38 +21,31 @@ module gridrt_pace #(
     input logic last_i      // the last test of its task
 );
   typedef longint unsigned count_t;
-  typedef struct packed {
-    count_t came;
-    count_t refusals;  // until then
-  } stamp_t;
-
   count_t tests /*verilator public_flat_rd*/;
   count_t work /*verilator public_flat_rd*/;
-  count_t refused /*verilator public_flat_rd*/;  // other clocks with a task refused
 
-  // Tasks in the queue, being read, and with references to be tested: each in order.
-  stamp_t [63:0] queued, reading, tested;
+  // When tasks came that are in the queue, being read, and have references to be tested: in order.
+  count_t [63:0] queued, reading, tested;
   logic [5:0] queued_in, queued_out, reading_in, reading_out, tested_in, tested_out;
-  stamp_t at_port, first, done;  // done: the latest test
-  count_t now, refusals, from;
+  count_t at_port, first, done;  // done: the latest test
+  count_t now, from;
   logic waited;
 
-  assign first = waited ? at_port : {now, refusals};
+  assign first = waited ? at_port : now;
   always_comb begin
-    from = tested[tested_out].came + count_t'(LATENCY);
-    if (from <= done.came) from = done.came + 1;
+    from = tested[tested_out] + count_t'(LATENCY);
+    if (from <= done) from = done + 1;
   end
 
   always_ff @(posedge clk_i or negedge rst_ni) begin
     if (!rst_ni) begin
       now <= 1;
-      {tests, work, refused, refusals} <= '0;
+      {tests, work} <= '0;
       {done, at_port, waited} <= '0;
       {queued_in, queued_out, reading_in, reading_out, tested_in, tested_out} <= '0;
     end else begin
       now <= now + 1;
       waited <= task_valid_i && !task_ready_i;
-      refusals <= refusals + count_t'(task_valid_i && !task_ready_i);
       at_port <= first;
       if (task_valid_i && task_ready_i) queued_in <= queued_in + 1'b1;
       if (dropped_i || read_i) queued_out <= queued_out + 1'b1;
@@ -62,10 +55,7 @@ module gridrt_pace #(
       if (test_i) begin
         tests <= tests + 1;
         work <= work + now + 1 - from;
-        done <= {now, refusals};
-        if (tested[tested_out].refusals > done.refusals) begin
-          refused <= refused + tested[tested_out].refusals - done.refusals;
-        end
+        done <= now;
         if (last_i) tested_out <= tested_out + 1'b1;
       end
     end
@@ -82,6 +72,8 @@ module gridrt_pace #(
       if (test_i) assert (tested_in != tested_out && from <= now);
       if (ends_i || kept_i) assert (reading_in != reading_out);
       if (dropped_i || read_i) assert (queued_in != queued_out);
+      assert (queued_in + 1'b1 != queued_out && reading_in + 1'b1 != reading_out &&
+              tested_in + 1'b1 != tested_out);
     end
   end
 `endif

@@ -96,12 +96,13 @@ TEST(BuildImage, CellsHoldWhatTheGridGives) {
     const std::vector<DecodedCell> cells = decode_cells(image);
     for (std::size_t c = 0; c < cells.size(); ++c) {
       ASSERT_EQ(cells[c].references.size(), lists.first[c + 1] - lists.first[c]);
-      // Those that take most of the voxel first.
+      // For a board those that take most of the voxel first.
       std::vector<VoxelReference> list(
           lists.references.begin() + static_cast<std::ptrdiff_t>(lists.first[c]),
           lists.references.begin() + static_cast<std::ptrdiff_t>(lists.first[c + 1]));
-      std::ranges::sort(list, {}, [](const VoxelReference& r) {
-        return std::pair(-std::popcount(cells_of(r.quarters)), r.triangle);
+      const bool ranked = options.layout == protocol::Layout::kCompact;
+      std::ranges::sort(list, {}, [&](const VoxelReference& r) {
+        return std::pair(ranked ? -std::popcount(cells_of(r.quarters)) : 0, r.triangle);
       });
       for (std::size_t i = 0; i < list.size(); ++i) {
         const VoxelReference& r = list[i];
