@@ -12,7 +12,8 @@
 #
 # gridrt_rtl_bench(NAME TOP module SOURCES bench.cpp ... [LINK library ...] [and all of the above])
 #   GoogleTest executable NAME on that model, its tests known to ctest with the label "rtl".
-#   Benches with the same module, parameters, macros and files share one library.
+#   Benches with the same module, parameters, macros and files share one library. With MODEL library
+#   in place of TOP and what follows it, that one is used.
 find_program(GRIDRT_VERILATOR verilator)
 if(NOT GRIDRT_VERILATOR)
   message(FATAL_ERROR "Verilator is missing, which GRIDRT_BUILD_SIM=ON needs: run \"tools/setup\" "
@@ -126,7 +127,7 @@ function(gridrt_verilated name)
 endfunction()
 
 function(gridrt_rtl_bench name)
-  cmake_parse_arguments(ARG "TRACE;LUNA" "TOP" "SOURCES;LINK;PARAMETERS;DEFINES;FILES;FIRMWARE" ${ARGN})
+  cmake_parse_arguments(ARG "TRACE;LUNA" "TOP;MODEL" "SOURCES;LINK;PARAMETERS;DEFINES;FILES;FIRMWARE" ${ARGN})
   set(model TOP ${ARG_TOP})
   foreach(word PARAMETERS DEFINES FILES FIRMWARE)
     if(ARG_${word})
@@ -144,7 +145,9 @@ function(gridrt_rtl_bench name)
     string(SUBSTRING ${hash} 0 8 hash)
     string(APPEND library _${hash})
   endif()
-  if(NOT TARGET ${library})
+  if(ARG_MODEL)
+    set(library ${ARG_MODEL})
+  elseif(NOT TARGET ${library})
     gridrt_verilated(${library} ${model})
   endif()
   add_executable(${name} ${ARG_SOURCES})

@@ -148,9 +148,8 @@ class Collector {
       triangles.add(record);
     }
     RecordWriter<protocol::ReferenceCodec> references(image.header, pe.references);
-    const bool for_board = cut_.layout == protocol::Layout::kCompact;
     for (const std::size_t cell : pe.cells) {
-      for (const VoxelReference& r : in_order(list(cell), for_board)) {
+      for (const VoxelReference& r : in_order(list(cell))) {
         references.add(
             protocol::ReferenceRecord{triangle_index_[r.triangle], quarter_code(r.quarters)});
       }
@@ -168,8 +167,8 @@ class Collector {
  private:
   /// For a board those that take most of the voxel first: rays pass them by the least, and while
   /// they are tested a PE reads the others.
-  std::span<const VoxelReference> in_order(std::span<const VoxelReference> list, bool for_board) {
-    if (!for_board) return list;
+  std::span<const VoxelReference> in_order(std::span<const VoxelReference> list) {
+    if (cut_.layout != protocol::Layout::kCompact) return list;
     sorted_.assign(list.begin(), list.end());
     std::ranges::sort(sorted_, {}, [](const VoxelReference& r) {
       return std::pair(-std::popcount(cells_of(r.quarters)), r.triangle);

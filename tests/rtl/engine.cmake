@@ -1,11 +1,8 @@
 # The engine in several configurations, and with random stalls inside.
 function(gridrt_engine_bench name)
   gridrt_engine_model(model ${ARGN})
-  add_executable(rtl_engine_${name} engine_bench.cpp engine_harness.cpp)
-  target_link_libraries(rtl_engine_${name} PRIVATE ${model} gridrt_awkward gridrt_flags GTest::gtest_main)
-  target_include_directories(rtl_engine_${name} PRIVATE ${PROJECT_SOURCE_DIR})
-  gtest_discover_tests(rtl_engine_${name} TEST_PREFIX rtl_engine_${name}. DISCOVERY_TIMEOUT 60
-                       PROPERTIES LABELS rtl)
+  gridrt_rtl_bench(rtl_engine_${name} MODEL ${model} SOURCES engine_bench.cpp engine_harness.cpp
+                   LINK gridrt_awkward)
 endfunction()
 gridrt_engine_bench(b17_4 PARAMETERS B=17 PES=4)
 gridrt_engine_bench(b12_2 PARAMETERS B=12 PES=2 TUS=1 SLOTS=16 QUEUE=4 ROB=16)

@@ -1,7 +1,7 @@
 // Watches a PE from inside and counts the clocks in which it has work: a reference that is to be
 // tested is later than the fixed way from the port to its test takes. A PE's pace is its tests by
-// these clocks. Those in which it only reads references that the mask leaves out are not among them,
-// unless a reference to be tested is behind them.
+// these clocks. Those in which it only reads references that the mask leaves out are not among
+// them, unless a reference to be tested is behind them.
 //
 // A task comes in the clock in which it is first at the port, so the time in which the PE refuses
 // it counts. With a test at clock t, references have been waiting from the clock in which the task
